@@ -1,0 +1,5 @@
+#pragma once
+
+/// flotsam with Bullet.
+#include "flotsam/bullet/bullet_coupling.hpp"
+#include "flotsam/flotsam.hpp"

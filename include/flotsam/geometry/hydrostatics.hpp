@@ -1,0 +1,28 @@
+#pragma once
+
+#include "flotsam/geometry/triangle_mesh.hpp"
+
+#include <optional>
+
+namespace flotsam {
+
+/// The part of a solid that lies below a horizontal water plane.
+struct Submerged {
+    double volume = 0.0;                      ///< [m^3]
+    Vec3d center_of_buoyancy = Vec3d::Zero(); ///< [m], world frame; zero where volume is
+    double waterplane_area = 0.0;             ///< [m^2]
+};
+
+/// Exact for the closed mesh: each triangle is clipped at the plane z = water_level. `pose` places mesh points in the
+/// world.
+[[nodiscard]] Submerged submerged_part(const TriangleMesh& closed, const Pose& pose, double water_level);
+
+/// Height of the mesh's lowest vertex in the world [m].
+[[nodiscard]] double lowest_point(const TriangleMesh& mesh, const Pose& pose);
+
+/// Draft at which the mesh, turned as given, displaces `displaced_volume` [m^3]: how far its lowest point lies
+/// below the water [m]. Nothing if it displaces less than that when wholly under water: it sinks.
+[[nodiscard]] std::optional<double> equilibrium_draft(const TriangleMesh& closed, const Quatd& orientation,
+                                                      double displaced_volume);
+
+} // namespace flotsam

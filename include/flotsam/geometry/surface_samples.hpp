@@ -1,0 +1,36 @@
+#pragma once
+
+#include "flotsam/geometry/surface_query.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace flotsam {
+
+/// Where samples of a surface are to lie.
+struct SurfaceSampleSettings {
+    double spacing = 0.0; ///< distance of neighbouring samples [m], > 0
+    double inset = 0.0;   ///< depth below the surface on the solid's side [m], >= 0
+    int dimensions = 3;   ///< 2: only the outline in the plane y = 0 is sampled
+    enum class Solid {
+        inside,  ///< the solid is behind the triangles (against their normals): a body
+        outside, ///< the solid is in front of them: a container around the water
+        both     ///< water on both sides of a sheet: samples lie on it
+    } solid = Solid::inside;
+    std::uint64_t seed = 1; ///< of the random candidates
+};
+
+struct SurfaceSamples {
+    std::vector<Vec3d> positions; ///< [m], mesh frame
+    std::vector<double> depth;    ///< of each below the surface [m]; < inset where the solid is thin
+    double thin_fraction = 0.0;   ///< of the samples that sit in the middle of a part thinner than 2 insets
+};
+
+/// Blue-noise (Poisson disk) samples of the surface that lies `inset` deep in the solid: no two closer than about
+/// 0.8 spacings, no hole wider than about 1.2, evenly over edges and corners. Where the solid is thinner than
+/// two insets they lie in its middle, in one layer. The same input gives the same samples.
+/// **Source:** Yuksel 2015 (sample elimination), then a few steps of repulsion on the surface.
+[[nodiscard]] SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings);
+
+} // namespace flotsam

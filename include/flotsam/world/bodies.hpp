@@ -1,0 +1,46 @@
+#pragma once
+
+#include "flotsam/core/types.hpp"
+
+#include <cstddef>
+#include <span>
+
+namespace flotsam {
+
+/// One rigid body (or link) as the fluid sees it at the start of a step.
+struct BodyState {
+    Pose pose;             ///< of the centre-of-mass frame: position is the centre of mass
+    Twist predicted;       ///< at the end of the step under gravity and applied forces, without the fluid
+    bool responds = false; ///< dynamic; fixed and moving bodies move the water and are not moved by it
+};
+
+/// The bodies port: what the fluid needs from a rigid-body engine. World frame, SI units, wrenches and twists about
+/// each body's centre of mass. Bodies are numbered 0 .. size() - 1 in the order in which they were given to the
+/// FluidWorld.
+class Bodies {
+  public:
+    virtual ~Bodies() = default;
+
+    [[nodiscard]] virtual std::size_t size() const = 0;
+
+    /// Fills `states` (one per body) for a step of `dt` seconds.
+    virtual void read(double dt, std::span<BodyState> states) = 0;
+
+    /// Twist change that these impulses alone cause: linear, symmetric, positive semi-definite; zero for bodies that do
+    /// not respond. Must not change anything; called several times a step.
+    virtual void respond(std::span<const Wrench> impulses, std::span<Twist> twists) const = 0;
+
+    /// Hands the impulses of the step over for good.
+    virtual void apply(std::span<const Wrench> impulses) = 0;
+};
+
+/// A world without bodies.
+class NoBodies final : public Bodies {
+  public:
+    [[nodiscard]] std::size_t size() const override { return 0; }
+    void read(double, std::span<BodyState>) override {}
+    void respond(std::span<const Wrench>, std::span<Twist>) const override {}
+    void apply(std::span<const Wrench>) override {}
+};
+
+} // namespace flotsam

@@ -1,0 +1,109 @@
+#pragma once
+
+#include "flotsam/geometry/surface_samples.hpp"
+#include "flotsam/geometry/triangle_mesh.hpp"
+#include "flotsam/sph/boundary_state.hpp"
+#include "flotsam/sph/fluid_state.hpp"
+#include "flotsam/sph/pressure/settings.hpp"
+#include "flotsam/world/bodies.hpp"
+#include "flotsam/world/step_report.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace flotsam {
+
+/// Settings of a FluidWorld. Every field changes the result.
+struct FluidWorldSettings {
+    int dimensions = 3;                     ///< 2 or 3; 2: the plane y = 0, quantities per metre of width
+    double particle_spacing = 0.02;         ///< d [m], > 0
+    Vec3d gravity = Vec3d(0.0, 0.0, -9.81); ///< [m/s^2]
+    double rest_density = 1000.0;           ///< [kg/m^3], > 0
+    double kinematic_viscosity = 1e-6;      ///< [m^2/s], >= 0
+    PressureSettings pressure;
+    double max_time_step = 0.004; ///< [s], > 0
+    double cfl = 0.4;             ///< of a spacing that the fastest particle may go in a step, in (0, 1]
+    int threads = 0;              ///< 0: all the machine has; changes no bit of the result
+};
+
+/// Where the water is, seen from a wall's triangles.
+enum class WallSide {
+    automatic, ///< found from the fluid that is there when the world is first stepped
+    inside,    ///< behind the triangles: the mesh is a container
+    outside,   ///< in front of them: the mesh is a solid obstacle or a tank with walls of its own thickness
+    both       ///< a sheet with water on both sides
+};
+
+/// An SPH fluid, its walls and the boundary samples of the bodies that it moves and is moved by.
+///
+/// First walls, bodies and fluid are added, in any order; the first step (or prepare) cuts the fluid by the solids,
+/// samples surfaces and relaxes the particles to rest density. Not thread-safe; several worlds live side by side.
+class FluidWorld {
+  public:
+    /// Throws std::invalid_argument naming the setting, its range and unit.
+    explicit FluidWorld(const FluidWorldSettings& settings);
+    ~FluidWorld();
+    FluidWorld(FluidWorld&&) noexcept;
+    FluidWorld& operator=(FluidWorld&&) noexcept;
+    FluidWorld(const FluidWorld&) = delete;
+    FluidWorld& operator=(const FluidWorld&) = delete;
+
+    // -- building, before the first step --------------------------------------------------------------------------
+    /// Water in a box [m]; what lies inside walls or bodies is cut away. `velocity` [m/s].
+    void add_block(const Aabb& block, const Vec3d& velocity = Vec3d::Zero());
+    /// Water inside a closed, checked mesh.
+    void add_fluid_mesh(const TriangleMesh& closed, const Vec3d& velocity = Vec3d::Zero());
+    /// Single particles where the caller wants them [m]; never cut, never relaxed.
+    void add_particles(std::span<const Vec3d> positions, const Vec3d& velocity = Vec3d::Zero());
+    /// A fixed wall; returns its number.
+    int add_wall(const TriangleMesh& mesh, WallSide side = WallSide::automatic);
+    /// A box around water with some sides open ("+z", ...); returns its number.
+    int add_box_wall(const Aabb& box, const std::vector<std::string>& open = {});
+    /// A body as a closed mesh about its centre of mass; returns its number, the one it has in the Bodies port.
+    int add_body(const TriangleMesh& closed_about_center_of_mass);
+    /// Cuts, samples and relaxes now rather than in the first step; repeated calls do nothing.
+    void prepare(Bodies& bodies);
+
+    // -- stepping -------------------------------------------------------------------------------------------------
+    /// The largest step that settings.max_time_step, CFL and viscosity allow now [s].
+    [[nodiscard]] double allowed_time_step() const;
+    /// One step of `dt` seconds, > 0. The bodies get their impulses through the port; moving them is their engine's
+    /// work.
+    StepReport step(double dt, Bodies& bodies);
+
+    // -- reading --------------------------------------------------------------------------------------------------
+    [[nodiscard]] const FluidWorldSettings& settings() const;
+    [[nodiscard]] double time() const; ///< simulated [s]
+    [[nodiscard]] const FluidState& fluid() const;
+    [[nodiscard]] const BoundaryState& boundary() const;
+    [[nodiscard]] int wall_count() const;
+    [[nodiscard]] int body_count() const;
+    /// Mesh of wall k, as sampled: its triangles' normals point away from the water unless the side is `outside`.
+    [[nodiscard]] const TriangleMesh& wall_mesh(int wall) const;
+    /// Force [N] and torque [N m] that the fluid put on a body about its centre of mass, mean over the last step.
+    [[nodiscard]] Wrench fluid_wrench(int body) const;
+    /// Force [N] that the fluid put on a wall, mean over the last step.
+    [[nodiscard]] Vec3d wall_force(int wall) const;
+    /// Pressure [Pa] at a point: mean of the particles around it, each continued along the hydrostatic gradient to the
+    /// point; 0 where there is no fluid.
+    [[nodiscard]] double pressure_at(const Vec3d& point) const;
+    /// Height [m] of the water's surface on the vertical line through (x, y): where the smoothed volume fraction falls
+    /// through 1/2; nothing where the line meets no water.
+    [[nodiscard]] std::optional<double> level_at(double x, double y) const;
+    /// Height [m] of the undisturbed water: median of levels taken away from the bodies (`states`: where they are).
+    [[nodiscard]] std::optional<double> waterline(std::span<const BodyState> states) const;
+    /// What prepare noticed, a sentence each: fluid cut by bodies, thin solids sampled in one layer, ...
+    [[nodiscard]] const std::vector<std::string>& notes() const;
+    /// Of positions and velocities in order of creation, and of the time: equal states hash equal.
+    [[nodiscard]] std::uint64_t state_hash() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace flotsam

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "flotsam/core/types.hpp"
+
+#include <array>
+
+namespace flotsam {
+
+/// Seconds of wall clock per stage of a step.
+struct StageSeconds {
+    double bodies = 0.0, neighbours = 0.0, density = 0.0, forces = 0.0, pressure = 0.0, advance = 0.0, walls = 0.0;
+};
+
+/// What one FluidWorld::step did. Physics in trouble is counted here, never printed.
+struct StepReport {
+    double dt = 0.0;               ///< [s]
+    int iterations = 0;            ///< of the velocity solve (published: of the one solve)
+    int shift_iterations = 0;      ///< of the density solve of the split
+    bool converged = true;         ///< every solve reached its tolerance
+    double residual = 0.0;         ///< of the returned step: mean / rest density [-]
+    double compression_mean = 0.0; ///< mean over the fluid of max(0, rho/rho0 - 1)
+    double compression_max = 0.0;
+    int leaks_stopped = 0;                 ///< particles that the wall guard put back in this step
+    int leaked = 0;                        ///< particles that are outside all the same
+    double max_speed = 0.0;                ///< of the fluid [m/s]
+    Vec3d fluid_momentum = Vec3d::Zero();  ///< after the step [kg m/s]
+    Vec3d gravity_impulse = Vec3d::Zero(); ///< given to the fluid by gravity in this step [N s]
+    Vec3d wall_impulse = Vec3d::Zero();    ///< given to all walls by the fluid (pressure, viscosity, guard) [N s]
+    Vec3d body_impulse = Vec3d::Zero();    ///< given to all bodies by the fluid [N s]
+    Vec3d guard_impulse = Vec3d::Zero();   ///< the guard's part of wall_impulse + body_impulse [N s]
+    StageSeconds seconds;
+};
+
+} // namespace flotsam

@@ -1,0 +1,52 @@
+#include "flotsam/core/parallel.hpp"
+
+#include "flotsam/core/contracts.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace flotsam {
+
+struct Workers::Arena {
+    int threads;
+    tbb::task_arena tbb;
+    explicit Arena(int count) : threads(count), tbb(count) {}
+};
+
+Workers::Workers(int threads)
+{
+    require(threads >= 0 && threads <= 1024, "threads must be from 1 to 1024, or 0 for all the machine has", threads);
+    const int count = threads > 0 ? threads : std::max(1, tbb::info::default_concurrency());
+    arena_ = std::make_unique<Arena>(count);
+}
+
+Workers::~Workers() = default;
+Workers::Workers(Workers&&) noexcept = default;
+Workers& Workers::operator=(Workers&&) noexcept = default;
+
+int Workers::threads() const
+{
+    return arena_->threads;
+}
+
+void Workers::for_chunks(std::size_t items, FunctionRef<void(std::size_t, std::size_t, std::size_t)> body) const
+{
+    const std::size_t chunks = chunk_count(items);
+    const auto run = [&](std::size_t chunk) { body(chunk, chunk * kChunk, std::min(items, (chunk + 1) * kChunk)); };
+    if (arena_->threads == 1 || chunks < 2) {
+        for (std::size_t chunk = 0; chunk < chunks; ++chunk) run(chunk);
+        return;
+    }
+    arena_->tbb.execute([&] {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t chunk = range.begin(); chunk < range.end(); ++chunk) run(chunk);
+                          });
+    });
+}
+
+} // namespace flotsam
