@@ -22,7 +22,7 @@ void ContactBuilder::build(const Pairs& boundary_pairs, const BoundaryState& bou
                 const std::uint32_t b = boundary_pairs.index[k];
                 const std::int32_t owner = boundary.owner[b];
                 const Vec3 weight =
-                    static_cast<Scalar>(rest_density) * boundary.position[b][3] * boundary_pairs.gradient[k].head<3>();
+                    static_cast<Scalar>(rest_density) * boundary.volume[b] * boundary_pairs.gradient[k].head<3>();
                 const Vec3 arm =
                     boundary.position[b].head<3>() - centers[static_cast<std::size_t>(owner)].cast<Scalar>();
                 auto row = std::find_if(rows.begin() + static_cast<std::ptrdiff_t>(first), rows.end(),

@@ -2,7 +2,7 @@
 
 namespace flotsam {
 
-void compute_density(const Pairs& fluid_pairs, const Pairs& boundary_pairs, std::span<const Vec4> boundary,
+void compute_density(const Pairs& fluid_pairs, const Pairs& boundary_pairs, std::span<const Scalar> boundary_volume,
                      Scalar kernel_at_zero, double particle_mass, double rest_density, const Workers& workers,
                      std::span<Scalar> density)
 {
@@ -15,7 +15,7 @@ void compute_density(const Pairs& fluid_pairs, const Pairs& boundary_pairs, std:
         }
         Scalar solid = 0;
         for (std::uint32_t k = boundary_pairs.start[i]; k < boundary_pairs.start[i + 1]; ++k) {
-            solid += boundary[boundary_pairs.index[k]][3] * boundary_pairs.gradient[k][3];
+            solid += boundary_volume[boundary_pairs.index[k]] * boundary_pairs.gradient[k][3];
         }
         density[i] = mass * water + rho0 * solid;
     });

@@ -75,8 +75,13 @@ int FluidWorld::add_wall(const TriangleMesh& mesh, WallSide side)
     return wall_count() - 1;
 }
 
-int FluidWorld::add_box_wall(const Aabb& box, const std::vector<std::string>& open)
+int FluidWorld::add_box_wall(const Aabb& given, const std::vector<std::string>& open)
 {
+    Aabb box = given;
+    if (impl_->settings.dimensions == 2) { // a metre of width around the plane
+        box.min.y() = -0.5;
+        box.max.y() = 0.5;
+    }
     require((box.size().array() > 0.0).all(), "a box wall's min must be below its max [m]");
     static const std::array<std::string, 6> kSides = {"-x", "+x", "-y", "+y", "-z", "+z"};
     const int number = add_wall(container_box(box, open), WallSide::inside);

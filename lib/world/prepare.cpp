@@ -145,8 +145,8 @@ void FluidWorld::Impl::sample_surfaces()
         for (std::size_t b = 0; b < volumes.size(); ++b) {
             Vec4 position = Vec4::Zero();
             position.head<3>() = samples.positions[b].cast<Scalar>();
-            position[3] = static_cast<Scalar>(volumes[b]);
             boundary.position.push_back(position);
+            boundary.volume.push_back(static_cast<Scalar>(volumes[b]));
             boundary.velocity.push_back(Vec4::Zero());
             boundary.owner.push_back(static_cast<std::int32_t>(owner));
             boundary.position_body.push_back(samples.positions[b]);

@@ -126,7 +126,7 @@ void FluidWorld::Impl::sort_particles()
 
 void FluidWorld::Impl::measure_density(StepReport& report)
 {
-    compute_density(fluid_pairs, boundary_pairs, boundary.position, kernel.value(0), fluid.particle_mass,
+    compute_density(fluid_pairs, boundary_pairs, boundary.volume, kernel.value(0), fluid.particle_mass,
                     settings.rest_density, workers, fluid.density);
     contact_builder.build(boundary_pairs, boundary, centers, settings.rest_density, workers, contacts);
     const double rho0 = settings.rest_density;
@@ -153,6 +153,9 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
     if (settings.kinematic_viscosity > 0.0) {
         viscosity.add(settings.kinematic_viscosity, dt, settings.dimensions, support(), fluid, boundary, fluid_pairs,
                       boundary_pairs, centers, workers, predicted, total);
+    }
+    if (settings.dissipation > 0.0) {
+        dissipation.add(settings.dissipation, dt, settings.dimensions, spacing(), fluid, fluid_pairs, workers, predicted);
     }
     answer.resize(owners());
     respond(port, total, answer);

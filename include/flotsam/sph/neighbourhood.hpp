@@ -22,7 +22,7 @@ struct Pairs {
 };
 
 /// Neighbours of points `a` among points `b` (which `lists` has sorted into `grid`). A point is not its own neighbour:
-/// pass `same = true` if a and b are one set. Scratch is kept between calls.
+/// pass `same = true` if a and b are one set. The w of all points must be 0. Scratch is kept between calls.
 class NeighbourSearch {
   public:
     template <class Kernel>
@@ -33,8 +33,7 @@ class NeighbourSearch {
         pairs.gradient.resize(pairs.index.size());
         workers.for_each(a.size(), [&](std::size_t i) {
             for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
-                Vec4 offset = a[i] - b[pairs.index[k]];
-                offset[3] = 0;
+                const Vec4 offset = a[i] - b[pairs.index[k]];
                 const Scalar r = offset.norm();
                 Vec4 gradient = kernel.gradient_factor(r) * offset;
                 gradient[3] = kernel.value(r);
@@ -47,7 +46,8 @@ class NeighbourSearch {
     void find_indices(Scalar support, const CellGrid& grid, const CellLists& lists, std::span<const Vec4> a,
                       std::span<const Vec4> b, bool same, const Workers& workers, Pairs& pairs);
 
-    std::vector<std::vector<std::uint32_t>> found_; ///< per chunk, rows one after another
+    std::vector<std::vector<std::uint32_t>> found_; ///< per chunk, rows one after another; only grows
+    std::vector<std::size_t> counts_;               ///< of each chunk's found
 };
 
 } // namespace flotsam

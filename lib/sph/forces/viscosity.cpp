@@ -33,7 +33,7 @@ void Viscosity::add(double kinematic_viscosity, double dt, int dimensions, doubl
             for (std::uint32_t k = boundary_pairs.start[i]; k < boundary_pairs.start[i + 1]; ++k) {
                 const std::uint32_t b = boundary_pairs.index[k];
                 const Vec4 part =
-                    boundary.position[b][3] *
+                    boundary.volume[b] *
                     pull(fluid.position[i] - boundary.position[b], fluid.velocity[i] - boundary.velocity[b]) *
                     boundary_pairs.gradient[k];
                 change += part;

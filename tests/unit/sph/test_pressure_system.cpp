@@ -40,8 +40,8 @@ struct Cloud {
                         points.push_back(p);
                         continue;
                     }
-                    p[3] = Scalar(1.2 * kSpacing * kSpacing * kSpacing);
                     boundary.position.push_back(p);
+                    boundary.volume.push_back(Scalar(1.2 * kSpacing * kSpacing * kSpacing));
                     boundary.velocity.push_back(Vec4::Zero());
                     boundary.owner.push_back(body ? 1 : 0);
                 }
@@ -62,7 +62,7 @@ struct Cloud {
         search.find(kernel, grid, boundary_cells, points, boundary.position, false, workers, boundary_pairs);
         ContactBuilder().build(boundary_pairs, boundary, centers, kRho0, workers, contacts);
         density.resize(points.size());
-        compute_density(pairs, boundary_pairs, boundary.position, kernel.value(0), mass, kRho0, workers, density);
+        compute_density(pairs, boundary_pairs, boundary.volume, kernel.value(0), mass, kRho0, workers, density);
     }
 
     void respond(std::span<const Wrench> impulses, std::span<Twist> twists) const
