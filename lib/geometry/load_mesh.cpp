@@ -107,6 +107,7 @@ class SceneReader {
     static Vec3d placed(const aiVector3D& point, const aiMatrix4x4& m)
     {
         const Vec3d p(point.x, point.y, point.z);
+        if (m == aiMatrix4x4()) return p; // a product would spread a NaN, which check_mesh names, to all three
         return {Vec3d(m.a1, m.a2, m.a3).dot(p) + m.a4, Vec3d(m.b1, m.b2, m.b3).dot(p) + m.b4,
                 Vec3d(m.c1, m.c2, m.c3).dot(p) + m.c4};
     }
