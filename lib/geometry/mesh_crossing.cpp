@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace flotsam {
@@ -124,13 +123,35 @@ bool overlaps(const Aabb& a, const Aabb& b)
     return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
 }
 
-/// Solid angle of a triangle. **Source:** Van Oosterom & Strackee 1983.
-double solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c)
+/// Twice the area that edge a-b spans with `point`, seen along z, > 0 to the left of it. Both triangles of an edge find
+/// the same number but for its sign, and where it is zero the side of a point moved a little to +x, and less to +y.
+struct EdgeSide {
+    double area;
+    bool is_left;
+};
+
+EdgeSide edge_side(const TriangleMesh& mesh, int a, int b, const Vec3d& point)
 {
-    const double la = a.norm();
-    const double lb = b.norm();
-    const double lc = c.norm();
-    return 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    const Vec3d from = mesh.vertices[static_cast<std::size_t>(std::min(a, b))] - point;
+    const Vec3d to = mesh.vertices[static_cast<std::size_t>(std::max(a, b))] - point;
+    const double area = from.x() * to.y() - from.y() * to.x();
+    bool is_left = area > 0.0;
+    if (area == 0.0) is_left = from.y() != to.y() ? from.y() > to.y() : to.x() > from.x();
+    return a < b ? EdgeSide{area, is_left} : EdgeSide{-area, !is_left};
+}
+
+/// +1 or -1 if the way from `point` to +z leaves or enters the solid through the triangle, 0 if it misses it.
+int crossing_above(const TriangleMesh& mesh, int triangle, const Vec3d& point)
+{
+    const auto [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];
+    const EdgeSide ab = edge_side(mesh, a, b, point);
+    const EdgeSide bc = edge_side(mesh, b, c, point);
+    const EdgeSide ca = edge_side(mesh, c, a, point);
+    if (ab.is_left != bc.is_left || bc.is_left != ca.is_left) return 0;
+    const auto height = [&](int v) { return mesh.vertices[static_cast<std::size_t>(v)].z() - point.z(); };
+    const double weighted = bc.area * height(a) + ca.area * height(b) + ab.area * height(c);
+    if (ab.is_left) return weighted > 0.0 ? 1 : 0;
+    return weighted < 0.0 ? -1 : 0;
 }
 
 bool lies_on(const Corners& triangle, const Vec3d& point, double tolerance)
@@ -144,17 +165,25 @@ bool lies_on(const Corners& triangle, const Vec3d& point, double tolerance)
     return true;
 }
 
-/// Of some triangles about a point; nothing if the point lies on one of them.
-std::optional<double> winding_number(const TriangleMesh& mesh, const std::vector<int>& triangles, const Vec3d& point,
-                                     double tolerance)
+/// How often some triangles, which close a solid, wind around a point; nothing if it lies on one of them. Counted along
+/// +z, since most triangles are then sorted out by their bounds: a hull of 100 000 may have a thousand parts in it.
+std::optional<int> winding_number(const TriangleMesh& mesh, const std::vector<int>& triangles, const Vec3d& point,
+                                  double tolerance)
 {
-    double angle = 0.0;
+    int winding = 0;
     for (const int t : triangles) {
-        const Corners triangle = corners_of(mesh, t);
-        if (lies_on(triangle, point, tolerance)) return std::nullopt;
-        angle += solid_angle(triangle.points[0] - point, triangle.points[1] - point, triangle.points[2] - point);
+        const auto& corners = mesh.triangles[static_cast<std::size_t>(t)];
+        const auto is_beside = [&](int axis) {
+            const double x = mesh.vertices[static_cast<std::size_t>(corners[0])][axis] - point[axis];
+            const double y = mesh.vertices[static_cast<std::size_t>(corners[1])][axis] - point[axis];
+            const double z = mesh.vertices[static_cast<std::size_t>(corners[2])][axis] - point[axis];
+            return std::min({x, y, z}) > tolerance || std::max({x, y, z}) < -tolerance;
+        };
+        if (is_beside(0) || is_beside(1)) continue;
+        if (lies_on(corners_of(mesh, t), point, tolerance)) return std::nullopt;
+        winding += crossing_above(mesh, t, point);
     }
-    return angle / (4.0 * std::numbers::pi);
+    return winding;
 }
 
 } // namespace
@@ -190,7 +219,7 @@ Crossings find_crossings(const TriangleMesh& mesh, double tolerance, bool inside
 PartSide side_of_part(const TriangleMesh& mesh, const std::vector<int>& part, const std::vector<int>& other,
                       double tolerance)
 {
-    constexpr std::size_t kTried = 12;
+    constexpr std::size_t kTried = 12; // more than one only for cuts that run along edges of both parts
     PartSide side;
     const std::size_t step = std::max<std::size_t>(1, part.size() / kTried);
     for (std::size_t k = 0; k < part.size(); k += step) {
@@ -198,8 +227,8 @@ PartSide side_of_part(const TriangleMesh& mesh, const std::vector<int>& part, co
         const Vec3d point = (tried.points[0] + tried.points[1] + tried.points[2]) / 3.0;
         const auto winding = winding_number(mesh, other, point, tolerance);
         if (!winding) continue;
-        if (*winding > 0.5) side.place_inside = point;
-        ++(*winding > 0.5 ? side.inside : side.outside);
+        if (*winding > 0) side.place_inside = point;
+        ++(*winding > 0 ? side.inside : side.outside);
     }
     return side;
 }
