@@ -9,12 +9,13 @@ namespace flotsam {
 /// How the numbers in a mesh file are to be read.
 struct MeshFileOptions {
     double scale = 1.0;                           ///< metres per unit of the file, > 0
-    enum class UpAxis { z, y, x } up = UpAxis::z; ///< axis of the file that becomes +z; z takes the file as it is
+    enum class UpAxis { z, y, x } up = UpAxis::z; ///< axis of the file that becomes +z; z: as it is
 };
 
 /// Reads OBJ, STL, PLY, DAE, glTF or GLB through assimp; the node transforms of the file are applied, nothing else
 /// is: no unit or axis conversion beyond `options`. Polygons become triangles, points and lines are dropped, several
 /// parts stay several parts. Vertices are not welded and nothing is checked beyond what reading needs: see check_mesh.
+/// Coordinates have float's digits, as assimp keeps them.
 /// Throws InputError naming the file: missing, not readable, of an unknown format, truncated, without triangles.
 [[nodiscard]] TriangleMesh load_mesh(const std::filesystem::path& file, const MeshFileOptions& options = {});
 

@@ -29,10 +29,14 @@ struct MeshCheckReport {
 /// oriented and closed parts face outward (a part nested inside an odd number of others is a cavity and faces inward).
 /// On return `part_of_triangle` numbers the connected parts.
 ///
+/// Parts of a file may touch, and a part may be spread over several of the file's (materials); a connected part is
+/// named as its first triangle's part in the file. An open part keeps the side that most of its triangles had.
+///
 /// Throws InputError, one sentence that names the mesh, the place (vertex or edge, with coordinates) and what is
-/// allowed: empty, not finite, open (with the number of open edges and where), an edge shared by more than two
-/// triangles, not orientable, parts that cut each other, zero volume, smaller than the particle spacing resolves
-/// (extent below 2 spacings in every direction).
+/// allowed: empty, not finite, not orientable; and where it must be closed: open (with the number of open edges and
+/// where), an edge shared by more than two triangles, parts that cut each other, zero volume, smaller than the particle
+/// spacing resolves (extent below 2 spacings in every direction). Walls may branch and cross: there, such edges part
+/// the sheets that meet in them. Throws std::invalid_argument for a negative spacing.
 MeshCheckReport check_mesh(TriangleMesh& mesh, const MeshCheckOptions& options = {});
 
 } // namespace flotsam
