@@ -2,6 +2,7 @@
 
 #include "flotsam/core/contracts.hpp"
 #include "geometry/blue_noise.hpp"
+#include "geometry/crease_samples.hpp"
 #include "geometry/outline_samples.hpp"
 #include "geometry/point_grid.hpp"
 #include "geometry/sample_candidates.hpp"
@@ -52,12 +53,12 @@ double rim_length(const OffsetSurface& offset)
 }
 
 /// One step in which samples push their neighbours along the surface.
-void repel(std::vector<OffsetPoint>& samples, const OffsetSurface& offset, double spacing)
+void repel(std::vector<OffsetPoint>& samples, std::size_t fixed, const OffsetSurface& offset, double spacing)
 {
     const double reach = kReach * spacing;
     const std::vector<Vec3d> before = positions_of(samples);
     const PointGrid grid(before, reach);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (std::size_t i = fixed; i < samples.size(); ++i) {
         Vec3d push = Vec3d::Zero();
         grid.for_near(before[i], reach, [&](std::size_t j, double distance_sq) {
             if (j == i || distance_sq == 0.0) return;
@@ -108,17 +109,21 @@ std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const Surface
 {
     const double d = settings.spacing;
     const SampleCandidates candidates = sample_candidates(offset, kCandidates / (d * d), settings.seed);
-    std::vector<OffsetPoint> samples;
+    std::vector<OffsetPoint> samples = sample_creases(offset, d);
+    const std::size_t fixed = samples.size();
     if (!candidates.points.empty()) {
         const double area = covered_area(candidates, d) + 0.5 * d * rim_length(offset);
         const auto count = static_cast<std::size_t>(std::max(1.0, std::round(area / (d * d))));
-        for (std::size_t i : eliminate_crowded(positions_of(candidates.points), count, kHexagonal * d))
-            samples.push_back(candidates.points[i]);
-        for (int step = 0; step < kSteps; ++step) repel(samples, offset, d);
+        samples.insert(samples.end(), candidates.points.begin(), candidates.points.end());
+        std::vector<OffsetPoint> chosen;
+        for (std::size_t i : eliminate_crowded(positions_of(samples), fixed, count, kHexagonal * d))
+            chosen.push_back(samples[i]);
+        samples = std::move(chosen);
+        for (int step = 0; step < kSteps; ++step) repel(samples, fixed, offset, d);
         for (int round = 0; round < 3; ++round) {
             drop_crowded(samples, kClosest * d);
             if (!fill_holes(samples, candidates, kHole * d)) break;
-            for (int step = 0; step < 5; ++step) repel(samples, offset, d);
+            for (int step = 0; step < 5; ++step) repel(samples, fixed, offset, d);
         }
         drop_crowded(samples, kClosest * d);
     }
