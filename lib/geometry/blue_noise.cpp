@@ -3,6 +3,7 @@
 #include "geometry/point_grid.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace flotsam {
@@ -83,7 +84,8 @@ class CrowdHeap {
 
 } // namespace
 
-std::vector<std::size_t> eliminate_crowded(std::span<const Vec3d> points, std::size_t count, double reach)
+std::vector<std::size_t> eliminate_crowded(std::span<const Vec3d> points, std::size_t fixed, std::size_t count,
+                                           double reach)
 {
     const PointGrid grid(points, reach);
     std::vector<double> weights(points.size(), 0.0);
@@ -91,8 +93,9 @@ std::vector<std::size_t> eliminate_crowded(std::span<const Vec3d> points, std::s
         grid.for_near(points[i], reach, [&](std::size_t j, double distance_sq) {
             if (j != i) weights[i] += crowding(distance_sq, reach);
         });
+    for (std::size_t i = 0; i < fixed; ++i) weights[i] = -std::numeric_limits<double>::infinity();
     CrowdHeap heap(std::move(weights));
-    while (heap.size() > count) {
+    while (heap.size() > std::max(count, fixed)) {
         const std::size_t gone = heap.pop();
         grid.for_near(points[gone], reach, [&](std::size_t j, double distance_sq) {
             if (j != gone) heap.lighten(j, crowding(distance_sq, reach));

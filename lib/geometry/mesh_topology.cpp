@@ -39,7 +39,7 @@ MeshTopology topology(const TriangleMesh& mesh)
     std::vector<Side> sides;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         for (int k = 0; k < 3; ++k) {
-            const auto [low, high] = std::minmax(vertex(t, k), vertex(t, k + 1));
+            const auto [low, high] = std::minmax({vertex(t, k), vertex(t, k + 1)});
             if (low != high) sides.push_back({low, high, static_cast<int>(t), k});
         }
     std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& r) {

@@ -4,23 +4,12 @@
 #include "geometry/plane_cut.hpp"
 #include "geometry/point_grid.hpp"
 #include "geometry/sample_rods.hpp"
+#include "geometry/station_runs.hpp"
 
 #include <algorithm>
-#include <span>
 
 namespace flotsam {
 namespace {
-
-constexpr double kStations = 48.0;     ///< a spacing
-constexpr double kCornerCosine = 0.87; ///< of the turn, about 30 degrees, from which a vertex counts as a corner
-constexpr double kShort = 0.5;         ///< spacings: corners nearer than that are one
-
-/// One of many points along the offset outline.
-struct Station {
-    OffsetPoint point;
-    bool corner = false; ///< a sample is to lie here
-};
-using Run = std::vector<Station>; ///< connected
 
 Vec3d in_space(const Vec2d& p)
 {
@@ -51,7 +40,7 @@ TriangleMesh ribbon(const std::vector<CutLine>& lines, double half)
 class OutlineWalk {
   public:
     OutlineWalk(const OffsetSurface& offset, double side, double spacing)
-        : offset_(offset), side_(side), spacing_(spacing), step_(spacing / kStations)
+        : line_(spacing / kStationsPerSpacing), offset_(offset), side_(side), step_(spacing / kStationsPerSpacing)
     {
     }
 
@@ -68,12 +57,11 @@ class OutlineWalk {
             if (k > 0 || line.closed) turn(p, q, inward[(k + segments - 1) % segments], inward[k]);
             straight(p, q, inward[k]);
         }
-        connect(line.closed);
+        line_.finish(line.closed);
     }
 
-    std::vector<Run> runs;
-    std::vector<bool> run_closed;
-    std::vector<BarePoint> bare;
+    [[nodiscard]] const std::vector<Run>& runs() const { return line_.runs; }
+    [[nodiscard]] const std::vector<BarePoint>& bare() const { return bare_; }
 
   private:
     void straight(const Vec3d& p, const Vec3d& q, const Vec3d& inward)
@@ -82,9 +70,9 @@ class OutlineWalk {
         for (int k = 0; k <= steps; ++k) {
             const Vec3d base = p + static_cast<double>(k) / steps * (q - p);
             if (const auto point = offset_.below(base, inward)) {
-                add(*point, false);
+                line_.add(*point, false);
             } else {
-                bare.push_back({base, inward});
+                bare_.push_back({base, inward});
             }
         }
     }
@@ -96,14 +84,13 @@ class OutlineWalk {
         const double inset = offset_.inset();
         if (inset > 0.0 && from.dot(next - p) < 0.0) return arc(p, from, to, corner);
         if (inset > 0.0 && cosine < -0.999) {
-            pending_corner_ = true;
-            return;
+            return line_.corner_missed();
         }
         const Vec3d position = inset > 0.0 ? Vec3d(p + inset / (1.0 + cosine) * (from + to)) : p;
         if (offset_.surface().closest(position).distance >= (1.0 - OffsetSurface::kTolerance) * inset) {
-            add({position, (from + to).normalized(), inset, false}, corner);
-        } else {
-            pending_corner_ = corner;
+            line_.add({position, (from + to).normalized(), inset, false}, corner);
+        } else if (corner) {
+            line_.corner_missed();
         }
     }
 
@@ -117,139 +104,15 @@ class OutlineWalk {
             const Vec3d direction = std::cos(turned) * from + std::sin(turned) * across;
             const Vec3d position = p + inset * direction;
             if (offset_.surface().closest(position).distance >= (1.0 - OffsetSurface::kTolerance) * inset)
-                add({position, direction, inset, false}, corner && 2 * k == steps);
+                line_.add({position, direction, inset, false}, corner && 2 * k == steps);
         }
     }
 
-    void add(const OffsetPoint& point, bool corner)
-    {
-        stations_.push_back({point, corner || pending_corner_});
-        pending_corner_ = false;
-    }
-
-    /// Stations next to each other become runs. Where a layer in the middle of a thin part begins is a corner.
-    void connect(bool closed)
-    {
-        const auto joins = [&](const Station& s, const Station& r) {
-            return (s.point.position - r.point.position).norm() < 3.0 * step_;
-        };
-        std::vector<Run> found;
-        for (Station& station : stations_) {
-            if (found.empty() || !joins(found.back().back(), station)) {
-                found.emplace_back();
-            } else {
-                Station& last = found.back().back();
-                if ((last.point.position - station.point.position).norm() < 1e-9 * spacing_) {
-                    last.corner = last.corner || station.corner;
-                    continue;
-                }
-                if (last.point.thin != station.point.thin) station.corner = true;
-            }
-            found.back().push_back(station);
-        }
-        stations_.clear();
-        pending_corner_ = false;
-        bool loop = false;
-        if (closed && !found.empty() && joins(found.back().back(), found.front().front())) {
-            loop = found.size() == 1 && found.front().size() > 2;
-            if (!loop && found.size() > 1) {
-                Run joined = std::move(found.back());
-                found.pop_back();
-                joined.insert(joined.end(), found.front().begin(), found.front().end());
-                found.front() = std::move(joined);
-            }
-        }
-        for (Run& run : found) {
-            runs.push_back(std::move(run));
-            run_closed.push_back(loop);
-        }
-    }
-
+    RunBuilder line_;
+    std::vector<BarePoint> bare_;
     const OffsetSurface& offset_;
-    double side_, spacing_, step_;
-    std::vector<Station> stations_;
-    bool pending_corner_ = false;
+    double side_, step_;
 };
-
-/// Points along the piece of a run at steps of equal chord, its ends included.
-class EqualChords {
-  public:
-    explicit EqualChords(std::span<const Station> piece) : piece_(piece)
-    {
-        for (std::size_t k = 1; k < piece.size(); ++k) length_ += (position(k) - position(k - 1)).norm();
-    }
-    [[nodiscard]] double length() const { return length_; }
-
-    /// The ends and `steps` - 1 points between them.
-    [[nodiscard]] std::vector<OffsetPoint> points(int steps) const
-    {
-        double low = 0.0, high = 1.01 * length_ / steps;
-        for (int k = 0; k < 60; ++k) {
-            const double chord = 0.5 * (low + high);
-            (walk(chord, steps).size() == static_cast<std::size_t>(steps) + 1 ? low : high) = chord;
-        }
-        std::vector<OffsetPoint> points = walk(low, steps);
-        if (points.size() <= static_cast<std::size_t>(steps))
-            points.resize(static_cast<std::size_t>(steps) + 1, points.back());
-        points.back() = piece_.back().point;
-        return points;
-    }
-
-  private:
-    [[nodiscard]] const Vec3d& position(std::size_t k) const { return piece_[k].point.position; }
-
-    /// At most steps + 1 points, fewer if the piece ends before.
-    [[nodiscard]] std::vector<OffsetPoint> walk(double chord, int steps) const
-    {
-        std::vector<OffsetPoint> points{piece_.front().point};
-        for (std::size_t k = 1; k < piece_.size() && points.size() <= static_cast<std::size_t>(steps); ++k) {
-            double from = 0.0; // part of this segment that is behind
-            while (points.size() <= static_cast<std::size_t>(steps)) {
-                const Vec3d a = position(k - 1) - points.back().position, way = position(k) - position(k - 1);
-                if ((a + way).norm() < chord) break;
-                const double at = way.dot(a), way_sq = way.squaredNorm();
-                const double root = std::sqrt(std::max(0.0, at * at - way_sq * (a.squaredNorm() - chord * chord)));
-                from = std::clamp((root - at) / way_sq, from, 1.0);
-                OffsetPoint point = piece_[from < 0.5 ? k - 1 : k].point;
-                point.position = position(k - 1) + from * way;
-                points.push_back(point);
-            }
-        }
-        return points;
-    }
-
-    std::span<const Station> piece_;
-    double length_ = 0.0;
-};
-
-void sample_run(Run run, bool closed, double spacing, std::vector<OffsetPoint>& samples)
-{
-    if (closed) {
-        const auto corner = std::find_if(run.begin(), run.end(), [](const Station& s) { return s.corner; });
-        if (corner != run.end()) std::rotate(run.begin(), corner, run.end());
-        run.push_back(run.front());
-    }
-    std::vector<std::size_t> ends{0};
-    double since = 0.0;
-    for (std::size_t k = 1; k < run.size(); ++k) {
-        since += (run[k].point.position - run[k - 1].point.position).norm();
-        if (!run[k].corner || since < kShort * spacing) continue;
-        ends.push_back(k);
-        since = 0.0;
-    }
-    if (ends.back() + 1 < run.size()) {
-        if (since < kShort * spacing && ends.size() > 1) ends.pop_back();
-        ends.push_back(run.size() - 1);
-    }
-    if (ends.size() == 1) samples.push_back(run.front().point);
-    const std::span<const Station> all = run;
-    for (std::size_t k = 1; k < ends.size(); ++k) {
-        const EqualChords piece(all.subspan(ends[k - 1], ends[k] - ends[k - 1] + 1));
-        auto points = piece.points(std::max(1, static_cast<int>(std::lround(piece.length() / spacing))));
-        if (closed || k + 1 < ends.size()) points.pop_back(); // the next piece begins with it
-        samples.insert(samples.end(), points.begin(), points.end());
-    }
-}
 
 /// A thin part is walked along both its sides: the second layer of samples goes.
 void drop_second_layers(std::vector<OffsetPoint>& samples, double spacing)
@@ -280,10 +143,9 @@ std::vector<OffsetPoint> sample_outline(const SurfaceQuery& surface, const Surfa
     for (const CutLine& line : lines) walk.along(line);
 
     std::vector<OffsetPoint> samples;
-    for (std::size_t k = 0; k < walk.runs.size(); ++k)
-        sample_run(walk.runs[k], walk.run_closed[k], settings.spacing, samples);
+    for (const Run& run : walk.runs()) sample_run(run, settings.spacing, samples);
     drop_second_layers(samples, settings.spacing);
-    if (offset.inset() > 0.0) sample_rods(samples, walk.bare, offset, settings.spacing);
+    if (offset.inset() > 0.0) sample_rods(samples, walk.bare(), offset, settings.spacing);
     for (OffsetPoint& sample : samples) sample.position.y() = 0.0;
     return samples;
 }
