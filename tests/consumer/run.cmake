@@ -1,3 +1,5 @@
+cmake_minimum_required(VERSION 3.25)
+
 # Installs flotsam, then configures, builds and runs a program of somebody else against the installed tree.
 # -DSTEP=install|build|run|wrong_precision, and where things are: FLOTSAM_BUILD, PROJECT, WORK, CONFIGURE_ARGS
 
