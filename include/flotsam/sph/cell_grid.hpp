@@ -1,0 +1,51 @@
+#pragma once
+
+#include "flotsam/core/parallel.hpp"
+#include "flotsam/core/types.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace flotsam {
+
+/// Uniform grid of cubic cells, x fastest. Points outside are taken into the cell at the border: two points closer than
+/// a cell still fall into the same or adjacent cells, so no neighbour is lost, only speed.
+struct CellGrid {
+    Vec3 origin = Vec3::Zero(); ///< low corner [m]
+    Scalar inv_cell = 1;        ///< 1 / edge of a cell [1/m]
+    Eigen::Vector3i cells = Eigen::Vector3i::Ones();
+
+    /// Grid of cells of edge `cell` around the points of both sets, at most `max_cells` of them.
+    static CellGrid around(std::span<const Vec4> a, std::span<const Vec4> b, double cell, std::size_t max_cells);
+
+    [[nodiscard]] std::size_t size() const
+    {
+        return static_cast<std::size_t>(cells.x()) * static_cast<std::size_t>(cells.y()) *
+               static_cast<std::size_t>(cells.z());
+    }
+    [[nodiscard]] Eigen::Vector3i cell_of(const Vec4& p) const
+    {
+        const auto axis = [&](int k) {
+            const Scalar c = (p[k] - origin[k]) * inv_cell;
+            const Scalar last = static_cast<Scalar>(cells[k] - 1);
+            return static_cast<int>(c > Scalar(0) ? (c < last ? c : last) : Scalar(0)); // NaN goes to 0
+        };
+        return {axis(0), axis(1), axis(2)};
+    }
+    [[nodiscard]] std::uint32_t index_of(const Eigen::Vector3i& c) const
+    {
+        return static_cast<std::uint32_t>(c.x() + cells.x() * (c.y() + cells.y() * c.z()));
+    }
+};
+
+/// Points listed by cell: those of cell c are order[start[c]] .. order[start[c + 1]], in rising order.
+struct CellLists {
+    std::vector<std::uint32_t> start;
+    std::vector<std::uint32_t> order;
+    std::vector<std::uint32_t> cell; ///< of each point
+
+    void build(const CellGrid& grid, std::span<const Vec4> points, const Workers& workers);
+};
+
+} // namespace flotsam

@@ -1,0 +1,61 @@
+#include "flotsam/sph/neighbourhood.hpp"
+
+#include "flotsam/core/contracts.hpp"
+
+#include <algorithm>
+
+namespace flotsam {
+namespace {
+
+/// Calls visit(j) for the points of the 3 x 3 x 3 cells around p; the three cells of a row along x are one range.
+template <class Visit>
+void for_candidates(const CellGrid& grid, const CellLists& lists, const Vec4& p, Visit&& visit)
+{
+    const Eigen::Vector3i home = grid.cell_of(p);
+    const Eigen::Vector3i low = (home.array() - 1).max(0);
+    const Eigen::Vector3i high = (home.array() + 1).min(grid.cells.array() - 1);
+    for (int z = low.z(); z <= high.z(); ++z) {
+        for (int y = low.y(); y <= high.y(); ++y) {
+            const std::uint32_t first = lists.start[grid.index_of({low.x(), y, z})];
+            const std::uint32_t last = lists.start[grid.index_of({high.x(), y, z}) + 1];
+            for (std::uint32_t k = first; k < last; ++k) visit(lists.order[k]);
+        }
+    }
+}
+
+} // namespace
+
+void NeighbourSearch::find_indices(Scalar support, const CellGrid& grid, const CellLists& lists,
+                                   std::span<const Vec4> a, std::span<const Vec4> b, bool same, const Workers& workers,
+                                   Pairs& pairs)
+{
+    FLOTSAM_ASSERT(grid.inv_cell * support <= Scalar(1.001), "a cell must be at least one support radius wide");
+    const Scalar support_sq = support * support;
+    found_.resize(std::max(found_.size(), Workers::chunk_count(a.size())));
+    pairs.start.resize(a.size() + 1);
+    pairs.start[0] = 0;
+    workers.for_chunks(a.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t>& found = found_[chunk];
+        found.clear();
+        if (found.capacity() == 0) found.reserve(Workers::kChunk * 64);
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t before = found.size();
+            for_candidates(grid, lists, a[i], [&](std::uint32_t j) {
+                if ((a[i] - b[j]).template head<3>().squaredNorm() < support_sq && !(same && j == i)) {
+                    found.push_back(j);
+                }
+            });
+            pairs.start[i + 1] = static_cast<std::uint32_t>(found.size() - before);
+        }
+    });
+    for (std::size_t i = 0; i < a.size(); ++i) pairs.start[i + 1] += pairs.start[i];
+    const std::size_t total = pairs.start[a.size()];
+    if (pairs.index.capacity() < total) pairs.index.reserve(total + total / 4);
+    if (pairs.gradient.capacity() < total) pairs.gradient.reserve(total + total / 4);
+    pairs.index.resize(total);
+    workers.for_chunks(a.size(), [&](std::size_t chunk, std::size_t begin, std::size_t) {
+        std::copy(found_[chunk].begin(), found_[chunk].end(), pairs.index.begin() + pairs.start[begin]);
+    });
+}
+
+} // namespace flotsam

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "flotsam/sph/pressure/settings.hpp"
+#include "sph/pressure/pressure_system.hpp"
+
+#include <span>
+#include <vector>
+
+namespace flotsam {
+
+/// When a solve is done: mean over the particles of the complementarity residual times `scale` is at most `tolerance`.
+struct SolveGoal {
+    double scale = 1.0;
+    double tolerance = 1e-3;
+    int max_iterations = 200;
+    int min_iterations = 1;
+};
+
+struct SolveResult {
+    int iterations = 0;
+    double residual = 0.0; ///< in units of the goal's tolerance
+    bool converged = false;
+};
+
+/// Mean of max(0, b - A x) where x = 0 and of min(|b - A x|, x diagonal) (|b - A x| where positive) where x > 0:
+/// counts what is compressed and what is pushed too hard alike.
+/// `product` is A x.
+double complementarity_residual(std::span<const Scalar> x, std::span<const Scalar> b, std::span<const Scalar> product,
+                                std::span<const Scalar> diagonal, const Workers& workers, std::vector<double>& scratch);
+
+/// Solves 0 <= x _|_ A x - b >= 0, starting from the x that is passed in.
+class ComplementaritySolver {
+  public:
+    virtual ~ComplementaritySolver() = default;
+    virtual SolveResult solve(PressureOperator& op, std::span<const Scalar> b, std::span<const Scalar> diagonal,
+                              const SolveGoal& goal, std::span<Scalar> x) = 0;
+};
+
+/// Relaxed Jacobi with projection, relaxation 1/2. **Source:** Ihmsen et al. 2014, algorithm 1.
+/// **Differs:** residual as above; the diagonal holds the rigid response.
+class RelaxedJacobi final : public ComplementaritySolver {
+  public:
+    SolveResult solve(PressureOperator& op, std::span<const Scalar> b, std::span<const Scalar> diagonal,
+                      const SolveGoal& goal, std::span<Scalar> x) override;
+
+  private:
+    std::vector<Scalar> product_;
+    std::vector<double> sums_;
+};
+
+/// Modified proportioning with reduced gradient projections, preconditioned by the diagonal.
+/// **Source:** Dostal & Schoeberl 2005, algorithm 1, on the system scaled to unit diagonal.
+class Mprgp final : public ComplementaritySolver {
+  public:
+    SolveResult solve(PressureOperator& op, std::span<const Scalar> b, std::span<const Scalar> diagonal,
+                      const SolveGoal& goal, std::span<Scalar> x) override;
+
+  private:
+    struct Sums {
+        double a = 0.0, b = 0.0;
+        Sums& operator+=(const Sums& other);
+    };
+    double largest_eigenvalue(PressureOperator& op);
+    double largest_feasible_step(std::span<const Scalar> x, const Workers& workers);
+    void advance(double step, std::span<Scalar> x, const Workers& workers);
+
+    std::vector<Scalar> root_, gradient_, direction_, product_, work_, power_;
+    std::vector<double> sums_;
+    std::vector<Sums> pair_sums_;
+};
+
+} // namespace flotsam

@@ -1,0 +1,159 @@
+#include "sph/pressure/complementarity_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flotsam {
+Mprgp::Sums& Mprgp::Sums::operator+=(const Sums& other)
+{
+    a += other.a;
+    b += other.b;
+    return *this;
+}
+
+// Symbols as in the paper: g gradient, phi free gradient (g where x > 0), beta chopped gradient (min(g, 0) where
+// x = 0), phi~ = min(x / alpha, phi), p direction. All of them in the variable y = sqrt(diagonal) x, A scaled likewise.
+
+double Mprgp::largest_eigenvalue(PressureOperator& op)
+{
+    const Workers& workers = op.system().workers();
+    const std::size_t n = root_.size();
+    if (power_.size() != n) {
+        power_.resize(n);
+        for (std::size_t i = 0; i < n; ++i) power_[i] = Scalar(1) + Scalar(0.5) * static_cast<Scalar>(i % 7);
+    }
+    double value = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        workers.for_each(n, [&](std::size_t i) { work_[i] = power_[i] * root_[i]; });
+        op.apply(work_, product_);
+        const double norm_sq = workers.ordered_sum<double>(n, sums_, [&](std::size_t i) {
+            power_[i] = product_[i] * root_[i];
+            return static_cast<double>(power_[i]) * static_cast<double>(power_[i]);
+        });
+        value = std::sqrt(norm_sq);
+        if (!(value > 0.0)) return 1.0;
+        const Scalar inverse = static_cast<Scalar>(1.0 / value);
+        workers.for_each(n, [&](std::size_t i) { power_[i] *= inverse; });
+    }
+    return value;
+}
+
+SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::span<const Scalar> diagonal,
+                         const SolveGoal& goal, std::span<Scalar> x)
+{
+    const Workers& workers = op.system().workers();
+    const std::size_t n = x.size();
+    for (auto* v : {&root_, &gradient_, &direction_, &product_, &work_}) v->resize(n);
+    workers.for_each(n, [&](std::size_t i) {
+        root_[i] = diagonal[i] > Scalar(0) ? Scalar(1) / std::sqrt(diagonal[i]) : Scalar(0); // 0 freezes lone particles
+        if (!(diagonal[i] > Scalar(0))) x[i] = 0;
+    });
+    // A step of 1.5 / |A| leaves room for a norm that three power iterations underestimate (a bound of 2 is allowed).
+    const double alpha = 1.5 / largest_eigenvalue(op);
+    // y is kept as x: x = y * root. gradient_ = root * (A x - b).
+    const auto refresh_gradient = [&] {
+        op.apply(x, product_);
+        workers.for_each(n, [&](std::size_t i) { gradient_[i] = root_[i] * (product_[i] - b[i]); });
+    };
+    const auto free_gradient = [&](std::size_t i) { return x[i] > Scalar(0) ? gradient_[i] : Scalar(0); };
+    const auto y_of = [&](std::size_t i) { return root_[i] > Scalar(0) ? x[i] / root_[i] : Scalar(0); };
+    const auto residual = [&] {
+        const double sum = workers.ordered_sum<double>(n, sums_, [&](std::size_t i) {
+            if (!(root_[i] > Scalar(0))) return 0.0;
+            const double rest = -static_cast<double>(gradient_[i]) / static_cast<double>(root_[i]);
+            return rest > 0.0 ? rest : std::min(-rest, static_cast<double>(x[i]) * static_cast<double>(diagonal[i]));
+        });
+        return n == 0 ? 0.0 : goal.scale * sum / static_cast<double>(n);
+    };
+    const auto restart_direction = [&] {
+        workers.for_each(n, [&](std::size_t i) { direction_[i] = free_gradient(i); });
+    };
+
+    SolveResult result;
+    std::vector<Sums>& sums = pair_sums_;
+    refresh_gradient();
+    restart_direction();
+    while (true) {
+        result.residual = residual();
+        result.converged = result.residual <= goal.tolerance;
+        if (result.converged && result.iterations >= goal.min_iterations) break;
+        if (result.iterations >= goal.max_iterations) break;
+        ++result.iterations;
+        const Sums norms = workers.ordered_sum<Sums>(n, sums, [&](std::size_t i) {
+            const double g = gradient_[i];
+            const double phi = free_gradient(i);
+            const double reduced = std::min(static_cast<double>(y_of(i)) / alpha, phi);
+            const double beta = x[i] > Scalar(0) ? 0.0 : std::min(g, 0.0);
+            return Sums{beta * beta, reduced * phi};
+        });
+        const bool proportional = norms.a <= norms.b;
+        if (!proportional) {
+            workers.for_each(n, [&](std::size_t i) {
+                direction_[i] = x[i] > Scalar(0) ? Scalar(0) : std::min(gradient_[i], Scalar(0));
+            });
+        }
+        workers.for_each(n, [&](std::size_t i) { work_[i] = root_[i] * direction_[i]; });
+        op.apply(work_, product_);
+        const Sums products = workers.ordered_sum<Sums>(n, sums, [&](std::size_t i) {
+            const double p = direction_[i];
+            return Sums{gradient_[i] * p, p * static_cast<double>(root_[i]) * static_cast<double>(product_[i])};
+        });
+        if (!(products.b > 0.0)) { // no curvature left along it within rounding
+            refresh_gradient();
+            restart_direction();
+            continue;
+        }
+        const double step = products.a / products.b;
+        if (!proportional) {
+            advance(step, x, workers);
+            restart_direction();
+            continue;
+        }
+        const double feasible = largest_feasible_step(x, workers);
+        if (step <= feasible) {
+            advance(step, x, workers);
+            const Sums next = workers.ordered_sum<Sums>(n, sums, [&](std::size_t i) {
+                return Sums{static_cast<double>(free_gradient(i)) * static_cast<double>(root_[i]) *
+                                static_cast<double>(product_[i]),
+                            0.0};
+            });
+            const Scalar gamma = static_cast<Scalar>(next.a / products.b);
+            workers.for_each(n, [&](std::size_t i) { direction_[i] = free_gradient(i) - gamma * direction_[i]; });
+        } else {
+            advance(feasible, x, workers);
+            workers.for_each(n, [&](std::size_t i) {
+                x[i] = std::max(Scalar(0), x[i] - static_cast<Scalar>(alpha) * root_[i] * free_gradient(i));
+            });
+            refresh_gradient();
+            restart_direction();
+        }
+    }
+    return result;
+}
+
+void Mprgp::advance(double step, std::span<Scalar> x, const Workers& workers)
+{
+    const Scalar s = static_cast<Scalar>(step);
+    workers.for_each(x.size(), [&](std::size_t i) {
+        x[i] = std::max(Scalar(0), x[i] - s * root_[i] * direction_[i]);
+        gradient_[i] -= s * root_[i] * product_[i];
+    });
+}
+
+double Mprgp::largest_feasible_step(std::span<const Scalar> x, const Workers& workers)
+{
+    const std::size_t n = x.size();
+    sums_.assign(Workers::chunk_count(n), std::numeric_limits<double>::infinity());
+    workers.for_chunks(n, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = begin; i < end; ++i) {
+            const double change = static_cast<double>(root_[i]) * static_cast<double>(direction_[i]);
+            if (change > 0.0) least = std::min(least, static_cast<double>(x[i]) / change);
+        }
+        sums_[chunk] = least;
+    });
+    return sums_.empty() ? 0.0 : *std::min_element(sums_.begin(), sums_.end());
+}
+
+} // namespace flotsam

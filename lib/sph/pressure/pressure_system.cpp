@@ -1,0 +1,115 @@
+#include "sph/pressure/pressure_system.hpp"
+
+#include "flotsam/core/contracts.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+
+namespace flotsam {
+
+void PressureSystem::velocity_change(std::span<const Scalar> x, std::span<Vec4> dv) const
+{
+    workers_->for_each(size(), [&](std::size_t i) {
+        const Scalar own = x[i];
+        Vec4 sum = Vec4::Zero();
+        for (std::uint32_t k = pairs_->start[i]; k < pairs_->start[i + 1]; ++k) {
+            sum += (own + x[pairs_->index[k]]) * pairs_->gradient[k];
+        }
+        sum = -mass_ * sum - own * contacts_->gradient[i];
+        sum[3] = 0;
+        dv[i] = sum;
+    });
+}
+
+void PressureSystem::density_rate(std::span<const Vec4> velocity, std::span<const Twist> twists,
+                                  std::span<Scalar> rate) const
+{
+    workers_->for_each(size(), [&](std::size_t i) {
+        const Vec4 own = velocity[i];
+        Vec4 sum = Vec4::Zero(); // w stays zero: velocities carry w = 0
+        for (std::uint32_t k = pairs_->start[i]; k < pairs_->start[i + 1]; ++k) {
+            sum += (own - velocity[pairs_->index[k]]).cwiseProduct(pairs_->gradient[k]);
+        }
+        sum = mass_ * sum + own.cwiseProduct(contacts_->gradient[i]);
+        rate[i] = sum.sum();
+    });
+    for (std::size_t owner = 0; owner < twists.size(); ++owner) {
+        Vec6 twist;
+        twist << twists[owner].linear.cast<Scalar>(), twists[owner].angular.cast<Scalar>();
+        if (twist.isZero(0)) continue;
+        const std::size_t first = contacts_->start[owner];
+        workers_->for_each(contacts_->start[owner + 1] - first, [&](std::size_t k) {
+            rate[contacts_->particle[first + k]] -= contacts_->row[first + k].dot(twist);
+        });
+    }
+}
+
+void PressureSystem::impulses(std::span<const Scalar> x, std::span<Wrench> out) const
+{
+    FLOTSAM_ASSERT(out.size() == contacts_->owners(), "one wrench per owner");
+    workers_->for_each(out.size(), [&](std::size_t owner) {
+        Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+        for (std::uint32_t k = contacts_->start[owner]; k < contacts_->start[owner + 1]; ++k) {
+            sum += static_cast<double>(x[contacts_->particle[k]]) * contacts_->row[k].cast<double>();
+        }
+        out[owner] = {static_cast<double>(mass_) * sum.head<3>(), static_cast<double>(mass_) * sum.tail<3>()};
+    });
+}
+
+void PressureSystem::fluid_diagonal(std::span<Scalar> diagonal) const
+{
+    workers_->for_each(size(), [&](std::size_t i) {
+        Vec4 sum = Vec4::Zero();
+        Vec4 squares = Vec4::Zero();
+        for (std::uint32_t k = pairs_->start[i]; k < pairs_->start[i + 1]; ++k) {
+            sum += pairs_->gradient[k];
+            squares += pairs_->gradient[k].cwiseAbs2();
+        }
+        const Vec4 total = mass_ * sum + contacts_->gradient[i];
+        diagonal[i] = total.head<3>().squaredNorm() + mass_ * mass_ * squares.head<3>().sum();
+    });
+}
+
+void PressureSystem::add_response_diagonal(std::span<const Eigen::Matrix<double, 6, 6>> mobility, bool exact,
+                                           std::span<Scalar> diagonal) const
+{
+    using Vec6d = Eigen::Matrix<double, 6, 1>;
+    for (std::size_t owner = 0; owner < mobility.size(); ++owner) {
+        if (mobility[owner].isZero(0)) continue;
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(mobility[owner]);
+        const Eigen::Matrix<double, 6, 6> root_t =
+            eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+        Vec6d sums = Vec6d::Zero();
+        for (std::uint32_t k = contacts_->start[owner]; k < contacts_->start[owner + 1]; ++k) {
+            sums += (root_t * contacts_->row[k].cast<double>()).cwiseAbs();
+        }
+        for (std::uint32_t k = contacts_->start[owner]; k < contacts_->start[owner + 1]; ++k) {
+            const Vec6d u = root_t * contacts_->row[k].cast<double>();
+            const double part = exact ? u.squaredNorm() : u.cwiseAbs().dot(sums);
+            diagonal[contacts_->particle[k]] += mass_ * static_cast<Scalar>(part);
+        }
+    }
+}
+
+void PressureOperator::bind(const PressureSystem& system, const OwnerResponse* response, std::size_t owners)
+{
+    system_ = &system;
+    response_ = response;
+    velocity_change_.resize(system.size());
+    impulses_.resize(owners);
+    twists_.assign(owners, Twist{});
+}
+
+void PressureOperator::apply(std::span<const Scalar> x, std::span<Scalar> out)
+{
+    system_->velocity_change(x, velocity_change_);
+    if (response_ != nullptr) {
+        system_->impulses(x, impulses_);
+        (*response_)(impulses_, twists_);
+    }
+    system_->density_rate(velocity_change_, twists_, out);
+    system_->workers().for_each(out.size(), [&](std::size_t i) { out[i] = -out[i]; });
+}
+
+} // namespace flotsam

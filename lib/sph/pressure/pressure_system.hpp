@@ -1,0 +1,81 @@
+#pragma once
+
+#include "flotsam/core/parallel.hpp"
+#include "flotsam/core/types.hpp"
+#include "flotsam/sph/neighbourhood.hpp"
+#include "sph/contacts.hpp"
+
+#include <span>
+#include <vector>
+
+namespace flotsam {
+
+/// Answers impulses on the owners (walls and bodies) with the twist changes they cause; walls answer zero.
+using OwnerResponse = FunctionRef<void(std::span<const Wrench> impulses, std::span<Twist> twists)>;
+
+/// The pressure system of one step. With x_i = dt p_i / rho_i^2 (per particle, >= 0) as unknown,
+///
+///     dv_i = -sum_j m (x_i + x_j) grad W_ij - x_i sum_b rho0 V_b grad W_ib        (= -M^-1 J^T lambda)
+///     twist_k = Y_k sum_i m x_i row_ik                                           (the bodies' answer)
+///     (A x)_i = -(J dv)_i,   (J v)_i = sum_j m (v_i - v_j) . grad W_ij + v_i . sum_b rho0 V_b grad W_ib - row_ik .
+///     twist_k
+///
+/// A is symmetric and positive semi-definite, and never formed: a product is two gather passes over the pairs with
+/// one reduction per body between them. Solve 0 <= x _|_ A x - b >= 0.
+/// **Source:** Ihmsen et al. 2014 for the fluid's part; Gissler et al. 2019 for the coupling idea.
+/// **Differs:** the bodies' response is part of A, not a step between solves.
+class PressureSystem {
+  public:
+    PressureSystem(const Pairs& pairs, const Contacts& contacts, double particle_mass, const Workers& workers)
+        : pairs_(&pairs), contacts_(&contacts), mass_(static_cast<Scalar>(particle_mass)), workers_(&workers)
+    {
+    }
+
+    [[nodiscard]] std::size_t size() const { return pairs_->rows(); }
+    [[nodiscard]] const Workers& workers() const { return *workers_; }
+
+    /// dv of each particle for multipliers x.
+    void velocity_change(std::span<const Scalar> x, std::span<Vec4> dv) const;
+
+    /// (J v)_i for particle velocities and owner twists: the rate of change of the densities [kg/m^3/s].
+    void density_rate(std::span<const Vec4> velocity, std::span<const Twist> twists, std::span<Scalar> rate) const;
+
+    /// Impulses on the owners for multipliers x [N s], [N m s].
+    void impulses(std::span<const Scalar> x, std::span<Wrench> out) const;
+
+    /// Diagonal of A without the owners' response.
+    void fluid_diagonal(std::span<Scalar> diagonal) const;
+
+    /// Adds to `diagonal`, for each particle at an owner that responds, a bound of the row sum of the owner's part of
+    /// A: with u_i = L^T row_i, Y = L L^T: sum_j |u_i . u_j| <= sum_c |u_ic| sum_j |u_jc|. A relaxed Jacobi sweep with
+    /// this diagonal converges however light the body is. `exact` adds the true diagonal instead.
+    void add_response_diagonal(std::span<const Eigen::Matrix<double, 6, 6>> mobility, bool exact,
+                               std::span<Scalar> diagonal) const;
+
+  private:
+    const Pairs* pairs_;
+    const Contacts* contacts_;
+    Scalar mass_;
+    const Workers* workers_;
+};
+
+/// A PressureSystem together with the response of its owners and the scratch a product needs.
+class PressureOperator {
+  public:
+    /// `response` may be null: owners stand still (weak coupling, and the position shift).
+    void bind(const PressureSystem& system, const OwnerResponse* response, std::size_t owners);
+
+    /// out = A x.
+    void apply(std::span<const Scalar> x, std::span<Scalar> out);
+
+    [[nodiscard]] const PressureSystem& system() const { return *system_; }
+
+  private:
+    const PressureSystem* system_ = nullptr;
+    const OwnerResponse* response_ = nullptr;
+    std::vector<Vec4> velocity_change_;
+    std::vector<Wrench> impulses_;
+    std::vector<Twist> twists_;
+};
+
+} // namespace flotsam

@@ -1,0 +1,30 @@
+#include "sph/pressure/complementarity_solver.hpp"
+
+#include <algorithm>
+
+namespace flotsam {
+
+SolveResult RelaxedJacobi::solve(PressureOperator& op, std::span<const Scalar> b, std::span<const Scalar> diagonal,
+                                 const SolveGoal& goal, std::span<Scalar> x)
+{
+    constexpr Scalar kRelaxation = Scalar(0.5);
+    const Workers& workers = op.system().workers();
+    product_.resize(x.size());
+    SolveResult result;
+    op.apply(x, product_);
+    while (true) {
+        result.residual = goal.scale * complementarity_residual(x, b, product_, diagonal, workers, sums_);
+        result.converged = result.residual <= goal.tolerance;
+        if (result.converged && result.iterations >= goal.min_iterations) break;
+        if (result.iterations >= goal.max_iterations) break;
+        workers.for_each(x.size(), [&](std::size_t i) {
+            if (!(diagonal[i] > Scalar(0))) return; // a particle alone carries no pressure
+            x[i] = std::max(Scalar(0), x[i] + kRelaxation * (b[i] - product_[i]) / diagonal[i]);
+        });
+        ++result.iterations;
+        op.apply(x, product_);
+    }
+    return result;
+}
+
+} // namespace flotsam

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "flotsam/core/types.hpp"
+
+#include <span>
+#include <vector>
+
+namespace flotsam {
+
+/// Where samples lie and how much they count, once for the cubic spline with support 2 d and blue-noise samples.
+struct BoundaryCalibration {
+    double inset;  ///< depth of the samples below the true surface, in spacings
+    double volume; ///< V_b = volume / sum_b' W_bb'
+};
+
+/// The constants for 2 or 3 dimensions, found on settled water: level and pressure of a still tank and the force on
+/// bodies held under water (tests/validation); no other constant depends on the scene.
+[[nodiscard]] BoundaryCalibration boundary_calibration(int dimensions);
+
+/// V_b of each sample [m^3]: calibration.volume / sum of the kernel over the samples of the same surface (itself
+/// included).
+/// **Source:** Akinci et al. 2012, eq. 4. **Differs:** by the calibrated factor.
+[[nodiscard]] std::vector<double> sample_volumes(std::span<const Vec3d> positions, double particle_spacing,
+                                                 int dimensions);
+
+} // namespace flotsam

@@ -1,0 +1,196 @@
+#include "flotsam/world/fluid_world.hpp"
+
+#include "flotsam/core/contracts.hpp"
+#include "flotsam/core/hash.hpp"
+#include "flotsam/geometry/shapes.hpp"
+#include "flotsam/geometry/volume_samples.hpp"
+#include "world/fluid_world_impl.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flotsam {
+namespace {
+
+const FluidWorldSettings& checked(const FluidWorldSettings& s)
+{
+    const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
+    require(s.dimensions == 2 || s.dimensions == 3, "dimensions must be 2 or 3", s.dimensions);
+    require(positive(s.particle_spacing), "particle_spacing must be > 0 [m]", s.particle_spacing);
+    require(s.gravity.allFinite(), "gravity must be finite [m/s^2]");
+    require(positive(s.rest_density), "rest_density must be > 0 [kg/m^3]", s.rest_density);
+    require(s.kinematic_viscosity >= 0.0 && std::isfinite(s.kinematic_viscosity),
+            "kinematic_viscosity must be >= 0 [m^2/s]", s.kinematic_viscosity);
+    require(positive(s.max_time_step), "max_time_step must be > 0 [s]", s.max_time_step);
+    require(s.cfl > 0.0 && s.cfl <= 1.0, "cfl must be in (0, 1]", s.cfl);
+    require(positive(s.pressure.tolerance), "pressure.tolerance must be > 0", s.pressure.tolerance);
+    require(positive(s.pressure.velocity_tolerance), "pressure.velocity_tolerance must be > 0",
+            s.pressure.velocity_tolerance);
+    require(s.pressure.max_iterations >= 1, "pressure.max_iterations must be >= 1", s.pressure.max_iterations);
+    return s;
+}
+
+} // namespace
+
+FluidWorld::Impl::Impl(const FluidWorldSettings& s)
+    : settings(checked(s)), workers(s.threads), kernel(2.0 * s.particle_spacing, s.dimensions)
+{
+}
+
+FluidWorld::FluidWorld(const FluidWorldSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+FluidWorld::~FluidWorld() = default;
+FluidWorld::FluidWorld(FluidWorld&&) noexcept = default;
+FluidWorld& FluidWorld::operator=(FluidWorld&&) noexcept = default;
+
+void FluidWorld::add_block(const Aabb& block, const Vec3d& velocity)
+{
+    require(!impl_->prepared, "water must be added before the first step");
+    require(!block.empty(), "a block's min must not exceed its max [m]");
+    require(velocity.allFinite(), "a block's velocity must be finite [m/s]");
+    impl_->seeds.push_back({fill_box(block, impl_->spacing(), impl_->settings.dimensions), velocity, true});
+}
+
+void FluidWorld::add_fluid_mesh(const TriangleMesh& closed, const Vec3d& velocity)
+{
+    require(!impl_->prepared, "water must be added before the first step");
+    const SurfaceQuery query(closed);
+    impl_->seeds.push_back({fill_mesh(query, impl_->spacing(), impl_->settings.dimensions), velocity, true});
+}
+
+void FluidWorld::add_particles(std::span<const Vec3d> positions, const Vec3d& velocity)
+{
+    require(!impl_->prepared, "water must be added before the first step");
+    for (const Vec3d& p : positions) require(p.allFinite(), "particle positions must be finite [m]");
+    impl_->seeds.push_back({{positions.begin(), positions.end()}, velocity, false});
+}
+
+int FluidWorld::add_wall(const TriangleMesh& mesh, WallSide side)
+{
+    require(!impl_->prepared, "walls must be added before the first step");
+    require(!mesh.empty(), "a wall needs at least one triangle");
+    Wall wall;
+    wall.mesh = mesh;
+    wall.side = side;
+    impl_->walls.push_back(std::move(wall));
+    return wall_count() - 1;
+}
+
+int FluidWorld::add_box_wall(const Aabb& box, const std::vector<std::string>& open)
+{
+    require((box.size().array() > 0.0).all(), "a box wall's min must be below its max [m]");
+    static const std::array<std::string, 6> kSides = {"-x", "+x", "-y", "+y", "-z", "+z"};
+    const int number = add_wall(container_box(box, open), WallSide::inside);
+    Wall& wall = impl_->walls.back();
+    wall.box = box;
+    for (std::size_t k = 0; k < 6; ++k) wall.open[k] = std::find(open.begin(), open.end(), kSides[k]) != open.end();
+    return number;
+}
+
+int FluidWorld::add_body(const TriangleMesh& closed_about_center_of_mass)
+{
+    require(!impl_->prepared, "bodies must be added before the first step");
+    require(!closed_about_center_of_mass.empty(), "a body needs a closed mesh");
+    BodySurface body;
+    body.mesh = closed_about_center_of_mass;
+    impl_->bodies.push_back(std::move(body));
+    return body_count() - 1;
+}
+
+void FluidWorld::prepare(Bodies& bodies)
+{
+    impl_->prepare(bodies);
+}
+
+double FluidWorld::allowed_time_step() const
+{
+    const FluidWorldSettings& s = impl_->settings;
+    double dt = s.max_time_step;
+    // Speed at the end of a step that gravity accelerates all the way: v + g dt.
+    const double reach = s.cfl * s.particle_spacing;
+    const double g = s.gravity.norm();
+    const double v = impl_->max_speed;
+    if (v > 0.0 || g > 0.0) dt = std::min(dt, 2.0 * reach / (v + std::sqrt(v * v + 4.0 * g * reach)));
+    if (s.kinematic_viscosity > 0.0) {
+        const double h = impl_->support();
+        dt = std::min(dt, 0.125 * h * h / (4.0 * s.kinematic_viscosity)); // Morris et al. 1997, smoothing length h / 2
+    }
+    return dt;
+}
+
+StepReport FluidWorld::step(double dt, Bodies& bodies)
+{
+    require(dt > 0.0 && std::isfinite(dt), "dt must be > 0 [s]", dt);
+    impl_->prepare(bodies);
+    return impl_->step(dt, bodies);
+}
+
+const FluidWorldSettings& FluidWorld::settings() const
+{
+    return impl_->settings;
+}
+
+double FluidWorld::time() const
+{
+    return impl_->time;
+}
+
+const FluidState& FluidWorld::fluid() const
+{
+    return impl_->fluid;
+}
+
+const BoundaryState& FluidWorld::boundary() const
+{
+    return impl_->boundary;
+}
+
+int FluidWorld::wall_count() const
+{
+    return static_cast<int>(impl_->walls.size());
+}
+
+int FluidWorld::body_count() const
+{
+    return static_cast<int>(impl_->bodies.size());
+}
+
+const TriangleMesh& FluidWorld::wall_mesh(int wall) const
+{
+    require(wall >= 0 && wall < wall_count(), "no wall has this number", wall);
+    return impl_->walls[static_cast<std::size_t>(wall)].mesh;
+}
+
+Wrench FluidWorld::fluid_wrench(int body) const
+{
+    require(body >= 0 && body < body_count(), "no body has this number", body);
+    if (!(impl_->last_dt > 0.0)) return {};
+    return impl_->total[impl_->walls.size() + static_cast<std::size_t>(body)] * (1.0 / impl_->last_dt);
+}
+
+Vec3d FluidWorld::wall_force(int wall) const
+{
+    require(wall >= 0 && wall < wall_count(), "no wall has this number", wall);
+    if (!(impl_->last_dt > 0.0)) return Vec3d::Zero();
+    return impl_->total[static_cast<std::size_t>(wall)].linear / impl_->last_dt;
+}
+
+const std::vector<std::string>& FluidWorld::notes() const
+{
+    return impl_->notes;
+}
+
+std::uint64_t FluidWorld::state_hash() const
+{
+    const FluidState& fluid = impl_->fluid;
+    std::vector<std::uint32_t> slot(fluid.size());
+    for (std::size_t i = 0; i < fluid.size(); ++i) slot[fluid.id[i]] = static_cast<std::uint32_t>(i);
+    StateHash hash;
+    hash.add_bytes(&impl_->time, sizeof impl_->time);
+    for (const std::uint32_t i : slot) {
+        hash.add_bytes(fluid.position[i].data(), 3 * sizeof(Scalar));
+        hash.add_bytes(fluid.velocity[i].data(), 3 * sizeof(Scalar));
+    }
+    return hash.value();
+}
+
+} // namespace flotsam

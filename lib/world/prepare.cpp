@@ -1,0 +1,204 @@
+#include "world/fluid_world_impl.hpp"
+
+#include "flotsam/core/contracts.hpp"
+#include "world/boundary_calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace flotsam {
+namespace {
+
+/// Inside the closed sides of a box wall: open ones do not bound.
+bool inside_box_wall(const Wall& wall, const Vec3d& p, int dimensions)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        if (dimensions == 2 && axis == 1) continue;
+        const std::size_t low = 2 * static_cast<std::size_t>(axis);
+        if (!wall.open[low] && !(p[axis] >= wall.box->min[axis])) return false;
+        if (!wall.open[low + 1] && !(p[axis] <= wall.box->max[axis])) return false;
+    }
+    return true;
+}
+
+bool is_closed(const TriangleMesh& mesh)
+{
+    // Every directed edge has its reverse: the sum of the triangles' area vectors vanishes for a closed surface.
+    Vec3d sum = Vec3d::Zero();
+    double area = 0.0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Vec3d part = (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
+        sum += part;
+        area += part.norm();
+    }
+    return sum.norm() < 1e-6 * area;
+}
+
+} // namespace
+
+void FluidWorld::Impl::prepare(Bodies& port)
+{
+    if (prepared) return;
+    prepared = true;
+    read_bodies(settings.max_time_step, port);
+    choose_wall_sides();
+    cut_and_place_fluid();
+    sample_surfaces();
+    std::vector<GuardedSurface> surfaces;
+    for (const Wall& wall : walls) {
+        surfaces.push_back({wall.query.get(), wall.side != WallSide::outside, wall.side != WallSide::inside});
+    }
+    for (const BodySurface& body : bodies) surfaces.push_back({body.query.get(), false, true});
+    guard.build(std::move(surfaces), spacing(), workers);
+    place_body_samples();
+    relax();
+}
+
+void FluidWorld::Impl::choose_wall_sides()
+{
+    for (Wall& wall : walls) {
+        wall.query = std::make_unique<SurfaceQuery>(wall.mesh);
+        if (wall.side != WallSide::automatic) continue;
+        double sum = 0.0;
+        std::size_t count = 0;
+        for (const FluidSeed& seed : seeds) {
+            const std::size_t stride = 1 + seed.positions.size() / 2000;
+            for (std::size_t k = 0; k < seed.positions.size(); k += stride, ++count) {
+                sum += wall.query->winding_number(seed.positions[k]);
+            }
+        }
+        const double mean = count > 0 ? sum / static_cast<double>(count) : 0.0;
+        if (mean < -0.5) {
+            wall.mesh = flipped(std::move(wall.mesh));
+            wall.query = std::make_unique<SurfaceQuery>(wall.mesh);
+        }
+        const bool container = std::abs(mean) > 0.5;
+        wall.side = container ? WallSide::inside : is_closed(wall.mesh) ? WallSide::outside : WallSide::both;
+    }
+    for (BodySurface& body : bodies) body.query = std::make_unique<SurfaceQuery>(body.mesh);
+}
+
+bool FluidWorld::Impl::in_solid(const Vec3d& point) const
+{
+    for (const Wall& wall : walls) {
+        if (wall.box) {
+            if (!inside_box_wall(wall, point, settings.dimensions)) return true;
+            continue;
+        }
+        if (wall.side == WallSide::both) continue;
+        if (wall.query->inside(point) == (wall.side == WallSide::outside)) return true;
+    }
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        const Vec3d local = states[k].pose.to_body(point);
+        if (bodies[k].query->bounds().contains(local) && bodies[k].query->inside(local)) return true;
+    }
+    return false;
+}
+
+void FluidWorld::Impl::cut_and_place_fluid()
+{
+    std::size_t cut_away = 0;
+    std::vector<char> keep;
+    for (const FluidSeed& seed : seeds) {
+        keep.assign(seed.positions.size(), 1);
+        if (seed.cut) {
+            workers.for_each(keep.size(), [&](std::size_t k) { keep[k] = in_solid(seed.positions[k]) ? 0 : 1; });
+        }
+        const Vec4 velocity(static_cast<Scalar>(seed.velocity.x()), static_cast<Scalar>(seed.velocity.y()),
+                            static_cast<Scalar>(seed.velocity.z()), Scalar(0));
+        for (std::size_t k = 0; k < keep.size(); ++k) {
+            if (keep[k] == 0) {
+                ++cut_away;
+                continue;
+            }
+            Vec4 position = Vec4::Zero();
+            position.head<3>() = seed.positions[k].cast<Scalar>();
+            fluid.position.push_back(position);
+            fluid.velocity.push_back(velocity);
+        }
+        max_speed = std::max(max_speed, seed.velocity.norm());
+    }
+    const std::size_t n = fluid.position.size();
+    fluid.particle_mass = settings.rest_density * std::pow(spacing(), settings.dimensions);
+    fluid.density.assign(n, static_cast<Scalar>(settings.rest_density));
+    fluid.pressure.assign(n, Scalar(0));
+    fluid.id.resize(n);
+    for (std::size_t i = 0; i < n; ++i) fluid.id[i] = static_cast<std::uint32_t>(i);
+    if (cut_away > 0) {
+        std::ostringstream note;
+        note << cut_away << " of " << n + cut_away << " fluid particles lay inside walls or bodies and were cut away";
+        notes.push_back(note.str());
+    }
+    seeds.clear();
+    seeds.shrink_to_fit();
+}
+
+void FluidWorld::Impl::sample_surfaces()
+{
+    SurfaceSampleSettings sampling;
+    sampling.spacing = spacing();
+    sampling.inset = boundary_calibration(settings.dimensions).inset * spacing();
+    sampling.dimensions = settings.dimensions;
+    const auto add = [&](const SurfaceSamples& samples, std::size_t owner, const std::string& name) {
+        const std::vector<double> volumes = sample_volumes(samples.positions, spacing(), settings.dimensions);
+        for (std::size_t b = 0; b < volumes.size(); ++b) {
+            Vec4 position = Vec4::Zero();
+            position.head<3>() = samples.positions[b].cast<Scalar>();
+            position[3] = static_cast<Scalar>(volumes[b]);
+            boundary.position.push_back(position);
+            boundary.velocity.push_back(Vec4::Zero());
+            boundary.owner.push_back(static_cast<std::int32_t>(owner));
+            boundary.position_body.push_back(samples.positions[b]);
+        }
+        if (samples.thin_fraction > 0.0) {
+            std::ostringstream note;
+            note.precision(2);
+            note << name << " is thinner than a particle spacing on " << 100.0 * samples.thin_fraction
+                 << " % of its surface: one layer of samples in its middle";
+            notes.push_back(note.str());
+        }
+    };
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+        using Solid = SurfaceSampleSettings::Solid;
+        const WallSide side = walls[k].side;
+        sampling.solid = side == WallSide::inside    ? Solid::outside
+                         : side == WallSide::outside ? Solid::inside
+                                                     : Solid::both;
+        add(sample_surface(*walls[k].query, sampling), k, "wall " + std::to_string(k));
+    }
+    sampling.solid = SurfaceSampleSettings::Solid::inside;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        add(sample_surface(*bodies[k].query, sampling), walls.size() + k, "body " + std::to_string(k));
+    }
+}
+
+/// The lattice of the start is a little too dense where it was cut or stretched: shift it to rest density before any
+/// velocity can come of it.
+void FluidWorld::Impl::relax()
+{
+    constexpr int kMaxRounds = 60;
+    StepReport ignored;
+    for (int round = 0; round < kMaxRounds && fluid.size() > 0; ++round) {
+        find_neighbours();
+        measure_density(ignored);
+        if (ignored.compression_mean <= 0.5 * settings.pressure.tolerance && ignored.compression_max < 0.01) break;
+        shift_diagonal.resize(fluid.size());
+        static_cast<void>(solve_shift());
+        new_position.resize(fluid.size());
+        workers.for_each(fluid.size(), [&](std::size_t i) { new_position[i] = fluid.position[i] + shift[i]; });
+        guard_relaxation();
+        fluid.position.swap(new_position);
+    }
+}
+
+void FluidWorld::Impl::guard_relaxation()
+{
+    relax_velocity.assign(fluid.size(), Vec4::Zero());
+    motion.resize(owners());
+    guarded.assign(owners(), Wrench{});
+    for (std::size_t k = 0; k < bodies.size(); ++k) motion[walls.size() + k] = {states[k].pose, states[k].pose, {}};
+    guard.stop(fluid.position, new_position, relax_velocity, motion, fluid.particle_mass, workers, guarded);
+}
+
+} // namespace flotsam

@@ -1,0 +1,121 @@
+#include "world/fluid_world_impl.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace flotsam {
+namespace {
+
+/// Calls visit(j) for the particles in the 27 cells around p as the grid of the last step has them. Particles have
+/// moved by less than a spacing since then.
+template <class Visit>
+void visit_around(const CellGrid& grid, const CellLists& cells, const Vec3d& p, Visit&& visit)
+{
+    if (cells.start.empty()) return;
+    const Vec4 place(static_cast<Scalar>(p.x()), static_cast<Scalar>(p.y()), static_cast<Scalar>(p.z()), Scalar(0));
+    const Eigen::Vector3i home = grid.cell_of(place);
+    const Eigen::Vector3i low = (home.array() - 1).max(0);
+    const Eigen::Vector3i high = (home.array() + 1).min(grid.cells.array() - 1);
+    for (int z = low.z(); z <= high.z(); ++z) {
+        for (int y = low.y(); y <= high.y(); ++y) {
+            const std::uint32_t first = cells.start[grid.index_of({low.x(), y, z})];
+            const std::uint32_t last = cells.start[grid.index_of({high.x(), y, z}) + 1];
+            for (std::uint32_t k = first; k < last; ++k) visit(cells.order[k]);
+        }
+    }
+}
+
+} // namespace
+
+double FluidWorld::pressure_at(const Vec3d& point) const
+{
+    const FluidState& fluid = impl_->fluid;
+    double weights = 0.0, sum = 0.0;
+    visit_around(impl_->grid, impl_->fluid_cells, point, [&](std::uint32_t j) {
+        const Vec3d at = fluid.position[j].head<3>().cast<double>();
+        const double w = static_cast<double>(impl_->kernel.value(static_cast<Scalar>((point - at).norm())));
+        if (!(w > 0.0)) return;
+        const double p = static_cast<double>(fluid.pressure[j]);
+        const double here = p > 0.0 ? p + impl_->settings.rest_density * impl_->settings.gravity.dot(point - at) : 0.0;
+        weights += w;
+        sum += w * std::max(0.0, here);
+    });
+    const double filled = weights * fluid.particle_mass / impl_->settings.rest_density;
+    return filled > 0.02 ? sum / weights : 0.0;
+}
+
+std::optional<double> FluidWorld::level_at(double x, double y) const
+{
+    // Profile of the volume fraction along the vertical line, on points a fifth of a spacing apart: each particle
+    // within reach adds its kernel to the points near it. The highest passage through 1/2 counts.
+    const FluidState& fluid = impl_->fluid;
+    const double d = impl_->spacing(), h = impl_->support(), dz = 0.2 * d;
+    std::vector<std::pair<double, double>> near; // height, squared distance from the line
+    for (const Vec4& p : fluid.position) {
+        const double dx = static_cast<double>(p.x()) - x;
+        const double dy = impl_->settings.dimensions == 3 ? static_cast<double>(p.y()) - y : 0.0;
+        if (dx * dx + dy * dy < h * h) near.emplace_back(static_cast<double>(p.z()), dx * dx + dy * dy);
+    }
+    if (near.empty()) return std::nullopt;
+    std::sort(near.begin(), near.end(), std::greater<>());
+    const double volume = fluid.particle_mass / impl_->settings.rest_density;
+    const auto fraction = [&](double z) {
+        double sum = 0.0;
+        for (const auto& [height, away_sq] : near) {
+            if (std::abs(height - z) >= h) continue;
+            const double r = std::sqrt(away_sq + (height - z) * (height - z));
+            sum += volume * static_cast<double>(impl_->kernel.value(static_cast<Scalar>(r)));
+        }
+        return sum;
+    };
+    double above = 0.0;
+    const double lowest = near.back().first - h;
+    for (double z = near.front().first + h; z > lowest; z -= dz) {
+        const double here = fraction(z);
+        if (here >= 0.5) return z + dz * (here - 0.5) / std::max(here - above, 1e-12);
+        above = here;
+    }
+    return std::nullopt;
+}
+
+std::optional<double> FluidWorld::waterline(std::span<const BodyState> states) const
+{
+    const FluidState& fluid = impl_->fluid;
+    if (fluid.size() == 0) return std::nullopt;
+    Aabb around;
+    for (const Vec4& p : fluid.position) around.extend(p.head<3>().cast<double>());
+    const double d = impl_->spacing();
+    const bool plane = impl_->settings.dimensions == 2;
+    // Away from bodies first; in a narrow tank, nearer.
+    for (const double away : {4.0, 2.0, 1.0}) {
+        std::vector<double> levels;
+        const int nx = plane ? 48 : 12, ny = plane ? 1 : 12;
+        for (int ix = 0; ix < nx; ++ix) {
+            for (int iy = 0; iy < ny; ++iy) {
+                const Vec3d size = around.size();
+                const double x = around.min.x() + (ix + 0.5) / nx * size.x();
+                const double y = plane ? 0.0 : around.min.y() + (iy + 0.5) / ny * size.y();
+                const auto near_body = [&](std::size_t k) {
+                    const Aabb box = impl_->bodies[k].query->bounds();
+                    const double radius = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
+                    const Vec3d& c = states[k].pose.position;
+                    return std::hypot(x - c.x(), plane ? 0.0 : y - c.y()) <
+                           (away > 1.0 ? radius : 0.7 * radius) + away * d;
+                };
+                bool taken = false;
+                for (std::size_t k = 0; k < states.size() && !taken; ++k) taken = near_body(k);
+                if (taken) continue;
+                if (const auto level = level_at(x, y)) levels.push_back(*level);
+            }
+        }
+        if (levels.size() >= 4) {
+            std::nth_element(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2),
+                             levels.end());
+            return levels[levels.size() / 2];
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace flotsam

@@ -1,0 +1,121 @@
+#include "world/fluid_world_impl.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flotsam {
+
+ComplementaritySolver& FluidWorld::Impl::solver()
+{
+    if (settings.pressure.solver == PressureSettings::Solver::mprgp) return mprgp;
+    return relaxed_jacobi;
+}
+
+void FluidWorld::Impl::build_mobility(Bodies& port)
+{
+    mobility.assign(owners(), Eigen::Matrix<double, 6, 6>::Zero());
+    unit.assign(owners(), Wrench{});
+    for (std::size_t k = walls.size(); k < owners(); ++k) {
+        if (!states[k - walls.size()].responds || contacts.start[k] == contacts.start[k + 1]) continue;
+        for (int c = 0; c < 6; ++c) {
+            (c < 3 ? unit[k].linear[c] : unit[k].angular[c - 3]) = 1.0;
+            respond(port, unit, answer);
+            mobility[k].col(c) << answer[k].linear, answer[k].angular;
+            unit[k] = Wrench{};
+        }
+        mobility[k] = 0.5 * (mobility[k] + mobility[k].transpose()).eval();
+    }
+}
+
+/// Positions are shifted so that the densities fall to rest density; bodies stand still in it and no momentum moves.
+SolveResult FluidWorld::Impl::solve_shift()
+{
+    const std::size_t n = fluid.size();
+    const Scalar rho0 = static_cast<Scalar>(settings.rest_density);
+    source.resize(n);
+    shift.assign(n, Vec4::Zero());
+    shift_multiplier.assign(n, Scalar(0));
+    workers.for_each(n, [&](std::size_t i) { source[i] = fluid.density[i] - rho0; });
+    const PressureSystem system(fluid_pairs, contacts, fluid.particle_mass, workers);
+    system.fluid_diagonal(shift_diagonal);
+    pressure_operator.bind(system, nullptr, owners());
+    SolveGoal goal;
+    goal.scale = 1.0 / settings.rest_density;
+    goal.tolerance = settings.pressure.tolerance;
+    goal.max_iterations = settings.pressure.max_iterations;
+    goal.min_iterations = 0;
+    const SolveResult result = solver().solve(pressure_operator, source, shift_diagonal, goal, shift_multiplier);
+    system.velocity_change(shift_multiplier, shift);
+    // The system is linear in the shift only for a fraction of a spacing.
+    const Scalar longest = static_cast<Scalar>(0.1 * spacing());
+    workers.for_each(n, [&](std::size_t i) {
+        const Scalar length = shift[i].norm();
+        if (length > longest) shift[i] *= longest / length;
+    });
+    return result;
+}
+
+void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& report)
+{
+    const std::size_t n = fluid.size();
+    const PressureSettings& pressure = settings.pressure;
+    const bool split = pressure.source == PressureSettings::Source::split;
+    const double rho0 = settings.rest_density;
+    shift_diagonal.resize(n);
+    if (split) {
+        const SolveResult result = solve_shift();
+        report.shift_iterations = result.iterations;
+        report.converged = result.converged;
+    } else {
+        shift.assign(n, Vec4::Zero());
+    }
+
+    const PressureSystem system(fluid_pairs, contacts, fluid.particle_mass, workers);
+    source.resize(n);
+    system.density_rate(predicted, twists, source);
+    const Scalar inv_dt = static_cast<Scalar>(1.0 / dt);
+    workers.for_each(n, [&](std::size_t i) {
+        const Scalar error = fluid.density[i] - static_cast<Scalar>(rho0);
+        source[i] += inv_dt * (split ? std::min(Scalar(0), error) : error);
+    });
+
+    diagonal.resize(n);
+    system.fluid_diagonal(diagonal);
+    const bool strong = pressure.coupling == PressureSettings::Coupling::strong && !bodies.empty();
+    if (strong) {
+        build_mobility(port);
+        const bool exact = pressure.solver == PressureSettings::Solver::mprgp;
+        system.add_response_diagonal(mobility, exact, diagonal);
+    }
+    const auto answer_impulses = [&](std::span<const Wrench> impulses, std::span<Twist> answers) {
+        respond(port, impulses, answers);
+    };
+    const OwnerResponse response = answer_impulses;
+    pressure_operator.bind(system, strong ? &response : nullptr, owners());
+
+    // The split leaves no density error in the pressure, so all of the last one is a good start; with the published
+    // source a full start integrates the error and rings.
+    const Scalar keep = split ? Scalar(1) : Scalar(0.5);
+    multiplier.resize(n);
+    workers.for_each(n, [&](std::size_t i) {
+        multiplier[i] = keep * static_cast<Scalar>(dt) * fluid.pressure[i] / (fluid.density[i] * fluid.density[i]);
+    });
+    SolveGoal goal;
+    goal.scale = dt / rho0;
+    goal.tolerance = split ? pressure.velocity_tolerance : pressure.tolerance;
+    goal.max_iterations = pressure.max_iterations;
+    const SolveResult result = solver().solve(pressure_operator, source, diagonal, goal, multiplier);
+    report.iterations = result.iterations;
+    report.residual = result.residual;
+    report.converged = report.converged && result.converged;
+
+    change.resize(n);
+    system.velocity_change(multiplier, change);
+    pushed.resize(owners());
+    system.impulses(multiplier, pushed);
+    for (std::size_t k = 0; k < owners(); ++k) total[k] += pushed[k];
+    workers.for_each(
+        n, [&](std::size_t i) { fluid.pressure[i] = multiplier[i] * fluid.density[i] * fluid.density[i] * inv_dt; });
+}
+
+} // namespace flotsam

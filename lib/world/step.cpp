@@ -1,0 +1,232 @@
+#include "world/fluid_world_impl.hpp"
+
+#include "flotsam/core/contracts.hpp"
+#include "flotsam/sph/density.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace flotsam {
+namespace {
+
+/// Adds the seconds of its life to `sum`.
+class StageClock {
+  public:
+    explicit StageClock(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
+    ~StageClock() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+    StageClock(const StageClock&) = delete;
+    StageClock& operator=(const StageClock&) = delete;
+
+  private:
+    double& sum_;
+    std::chrono::steady_clock::time_point start_;
+};
+
+template <class T>
+void reorder(std::vector<T>& values, std::vector<T>& scratch, std::span<const std::uint32_t> order,
+             const Workers& workers)
+{
+    scratch.resize(values.size());
+    workers.for_each(values.size(), [&](std::size_t i) { scratch[i] = values[order[i]]; });
+    values.swap(scratch);
+}
+
+Pose moved(const Pose& pose, const Twist& twist, double dt)
+{
+    const Vec3d turn = twist.angular * dt;
+    const double angle = turn.norm();
+    const Quatd rotation = angle > 0.0 ? Quatd(Eigen::AngleAxisd(angle, turn / angle)) : Quatd::Identity();
+    return {pose.position + dt * twist.linear, (rotation * pose.orientation).normalized()};
+}
+
+} // namespace
+
+StepReport FluidWorld::Impl::step(double dt, Bodies& port)
+{
+    StepReport report;
+    report.dt = dt;
+    {
+        const StageClock clock(report.seconds.bodies);
+        read_bodies(dt, port);
+        place_body_samples();
+    }
+    {
+        const StageClock clock(report.seconds.neighbours);
+        find_neighbours();
+    }
+    {
+        const StageClock clock(report.seconds.density);
+        measure_density(report);
+    }
+    {
+        const StageClock clock(report.seconds.forces);
+        add_forces(dt, port, report);
+    }
+    {
+        const StageClock clock(report.seconds.pressure);
+        solve_pressure(dt, port, report);
+    }
+    {
+        const StageClock clock(report.seconds.advance);
+        advance(dt, port, report);
+    }
+    time += dt;
+    last_dt = dt;
+    return report;
+}
+
+void FluidWorld::Impl::read_bodies(double dt, Bodies& port)
+{
+    require(port.size() == bodies.size(), "the port must have the bodies that were added to the fluid world",
+            port.size());
+    states.resize(bodies.size());
+    port.read(dt, states);
+}
+
+void FluidWorld::Impl::place_body_samples()
+{
+    centers.assign(owners(), Vec3d::Zero());
+    twists.assign(owners(), Twist{});
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        centers[walls.size() + k] = states[k].pose.position;
+        twists[walls.size() + k] = states[k].predicted;
+    }
+    workers.for_each(boundary.size(), [&](std::size_t b) {
+        const std::size_t owner = static_cast<std::size_t>(boundary.owner[b]);
+        if (owner < walls.size()) return;
+        const Pose& pose = states[owner - walls.size()].pose;
+        const Vec3d arm = pose.orientation * boundary.position_body[b];
+        boundary.position[b].head<3>() = (pose.position + arm).cast<Scalar>();
+        boundary.velocity[b].head<3>() = twists[owner].at(arm).cast<Scalar>();
+    });
+}
+
+void FluidWorld::Impl::find_neighbours()
+{
+    const std::size_t max_cells = std::max<std::size_t>(1u << 18, 16 * (fluid.size() + boundary.size()));
+    grid = CellGrid::around(fluid.position, boundary.position, support(), max_cells);
+    fluid_cells.build(grid, fluid.position, workers);
+    sort_particles();
+    boundary_cells.build(grid, boundary.position, workers);
+    search.find(kernel, grid, fluid_cells, fluid.position, fluid.position, true, workers, fluid_pairs);
+    boundary_search.find(kernel, grid, boundary_cells, fluid.position, boundary.position, false, workers,
+                         boundary_pairs);
+}
+
+void FluidWorld::Impl::sort_particles()
+{
+    const std::span<const std::uint32_t> order = fluid_cells.order;
+    reorder(fluid.position, sort_vec4, order, workers);
+    reorder(fluid.velocity, sort_vec4, order, workers);
+    reorder(fluid.pressure, sort_scalar, order, workers);
+    reorder(fluid.id, sort_id, order, workers);
+    for (std::size_t i = 0; i < fluid_cells.order.size(); ++i) fluid_cells.order[i] = static_cast<std::uint32_t>(i);
+}
+
+void FluidWorld::Impl::measure_density(StepReport& report)
+{
+    compute_density(fluid_pairs, boundary_pairs, boundary.position, kernel.value(0), fluid.particle_mass,
+                    settings.rest_density, workers, fluid.density);
+    contact_builder.build(boundary_pairs, boundary, centers, settings.rest_density, workers, contacts);
+    const double rho0 = settings.rest_density;
+    const auto compression = [&](std::size_t i) {
+        return std::max(0.0, static_cast<double>(fluid.density[i]) / rho0 - 1.0);
+    };
+    if (fluid.size() == 0) return;
+    report.compression_mean =
+        workers.ordered_sum<double>(fluid.size(), sums, compression) / static_cast<double>(fluid.size());
+    report.compression_max =
+        workers.ordered_sum<MaxOf>(fluid.size(), max_scratch, [&](std::size_t i) { return MaxOf{compression(i)}; })
+            .value;
+}
+
+void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
+{
+    predicted.resize(fluid.size());
+    const Vec4 gravity_step(static_cast<Scalar>(settings.gravity.x() * dt),
+                            static_cast<Scalar>(settings.gravity.y() * dt),
+                            static_cast<Scalar>(settings.gravity.z() * dt), Scalar(0));
+    workers.for_each(fluid.size(), [&](std::size_t i) { predicted[i] = fluid.velocity[i] + gravity_step; });
+    report.gravity_impulse = settings.gravity * (dt * fluid.particle_mass * static_cast<double>(fluid.size()));
+    total.assign(owners(), Wrench{});
+    if (settings.kinematic_viscosity > 0.0) {
+        viscosity.add(settings.kinematic_viscosity, dt, settings.dimensions, support(), fluid, boundary, fluid_pairs,
+                      boundary_pairs, centers, workers, predicted, total);
+    }
+    answer.resize(owners());
+    respond(port, total, answer);
+    for (std::size_t k = walls.size(); k < owners(); ++k) {
+        twists[k].linear += answer[k].linear;
+        twists[k].angular += answer[k].angular;
+    }
+}
+
+void FluidWorld::Impl::respond(Bodies& port, std::span<const Wrench> impulses, std::span<Twist> answers) const
+{
+    std::fill_n(answers.begin(), walls.size(), Twist{});
+    if (bodies.empty()) return;
+    port.respond(impulses.subspan(walls.size()), answers.subspan(walls.size()));
+}
+
+void FluidWorld::Impl::advance(double dt, Bodies& port, StepReport& report)
+{
+    const std::size_t n = fluid.size();
+    const Scalar step_size = static_cast<Scalar>(dt);
+    new_position.resize(n);
+    workers.for_each(n, [&](std::size_t i) {
+        fluid.velocity[i] = predicted[i] + change[i];
+        new_position[i] = fluid.position[i] + shift[i] + step_size * fluid.velocity[i];
+        new_position[i][3] = 0;
+    });
+    {
+        const StageClock clock(report.seconds.walls);
+        guard_walls(dt, port, report);
+    }
+    fluid.position.swap(new_position);
+    const double fastest_sq =
+        workers
+            .ordered_sum<MaxOf>(
+                n, max_scratch,
+                [&](std::size_t i) { return MaxOf{static_cast<double>(fluid.velocity[i].squaredNorm())}; })
+            .value;
+    report.max_speed = std::sqrt(fastest_sq);
+    report.fluid_momentum =
+        fluid.particle_mass *
+        workers
+            .ordered_sum<Sum3>(n, sum3_scratch,
+                               [&](std::size_t i) { return Sum3{fluid.velocity[i].head<3>().cast<double>()}; })
+            .value;
+    max_speed = report.max_speed;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        max_speed = std::max(max_speed, states[k].predicted.linear.norm());
+    }
+    for (std::size_t k = 0; k < owners(); ++k)
+        (k < walls.size() ? report.wall_impulse : report.body_impulse) += total[k].linear;
+    if (!bodies.empty()) port.apply(std::span<const Wrench>(total).subspan(walls.size()));
+}
+
+void FluidWorld::Impl::guard_walls(double dt, Bodies& port, StepReport& report)
+{
+    respond(port, total, answer);
+    motion.resize(owners());
+    guarded.assign(owners(), Wrench{});
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        const BodyState& state = states[k];
+        const std::size_t owner = walls.size() + k;
+        // twists already hold the answer to the viscous part of `total`; `answer` holds all of it.
+        const Twist twist{state.predicted.linear + answer[owner].linear,
+                          state.predicted.angular + answer[owner].angular};
+        motion[owner] = {state.pose, moved(state.pose, twist, dt), twist};
+    }
+    const GuardReport guard_report =
+        guard.stop(fluid.position, new_position, fluid.velocity, motion, fluid.particle_mass, workers, guarded);
+    report.leaks_stopped = guard_report.stopped;
+    report.leaked = guard_report.leaked;
+    for (std::size_t k = 0; k < owners(); ++k) {
+        total[k] += guarded[k];
+        report.guard_impulse += guarded[k].linear;
+    }
+}
+
+} // namespace flotsam

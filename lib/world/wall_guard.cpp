@@ -1,0 +1,132 @@
+#include "world/wall_guard.hpp"
+
+#include "flotsam/core/contracts.hpp"
+
+#include <algorithm>
+
+namespace flotsam {
+
+void WallGuard::build(std::vector<GuardedSurface> surfaces, double particle_spacing, const Workers& workers)
+{
+    surfaces_ = std::move(surfaces);
+    bounds_.clear();
+    bounds_.reserve(surfaces_.size());
+    for (const GuardedSurface& surface : surfaces_) {
+        bounds_.emplace_back(*surface.query, particle_spacing, 3.0 * particle_spacing, workers);
+    }
+    clearance_ = 0.02 * particle_spacing;
+}
+
+GuardReport WallGuard::stop(std::span<const Vec4> from, std::span<Vec4> to, std::span<Vec4> velocity,
+                            std::span<const GuardedMotion> motion, double particle_mass, const Workers& workers,
+                            std::span<Wrench> impulses)
+{
+    FLOTSAM_ASSERT(motion.size() == surfaces_.size() && impulses.size() == surfaces_.size(), "one of each per surface");
+    chunks_.resize(std::max(chunks_.size(), Workers::chunk_count(from.size())));
+    workers.for_chunks(from.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        Stopped& out = chunks_[chunk];
+        out.report = {};
+        out.reactions.clear();
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!to[i].allFinite()) continue; // counted by the step as physics in trouble
+            if (!may_hit(from[i].head<3>().cast<double>(), to[i].head<3>().cast<double>(), motion)) continue;
+            stop_one(from[i], to[i], velocity[i], motion, particle_mass, out);
+        }
+    });
+    GuardReport report;
+    for (std::size_t chunk = 0; chunk < Workers::chunk_count(from.size()); ++chunk) {
+        report.stopped += chunks_[chunk].report.stopped;
+        report.leaked += chunks_[chunk].report.leaked;
+        for (const Reaction& r : chunks_[chunk].reactions) impulses[r.surface] += r.impulse;
+    }
+    return report;
+}
+
+bool WallGuard::may_hit(const Vec3d& from, const Vec3d& to, std::span<const GuardedMotion> motion) const
+{
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+        const Vec3d a = motion[k].before.to_body(from);
+        const Vec3d b = motion[k].after.to_body(to);
+        // A path of length L that passes the surface has distance(a) + distance(b) <= L.
+        if (bounds_[k].at(a) + bounds_[k].at(b) <= (b - a).norm() + 2.0 * clearance_) return true;
+    }
+    return false;
+}
+
+std::optional<WallGuard::Hit> WallGuard::first_hit(const Vec3d& from, const Vec3d& to,
+                                                   std::span<const GuardedMotion> motion) const
+{
+    std::optional<Hit> first;
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+        const GuardedSurface& surface = surfaces_[k];
+        Vec3d a = motion[k].before.to_body(from);
+        const Vec3d b = motion[k].after.to_body(to);
+        double start = 0.0;
+        // Crossings in the allowed direction (out of a body that has moved over the particle) are passed by.
+        for (int tries = 0; tries < 8; ++tries) {
+            const auto hit = surface.query->sweep(a, b);
+            if (!hit) break;
+            const double fraction = start + hit->fraction * (1.0 - start);
+            const TriangleMesh& mesh = surface.query->mesh();
+            const std::size_t t = static_cast<std::size_t>(hit->triangle);
+            const Vec3d normal =
+                (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0)).normalized();
+            const bool along = (b - a).dot(normal) > 0.0;
+            if (along ? surface.stops_along_normals : surface.stops_against_normals) {
+                if (!first || fraction < first->fraction) {
+                    const Vec3d facing = along ? Vec3d(-normal) : normal;
+                    first = Hit{k, fraction, motion[k].after.orientation * facing};
+                }
+                break;
+            }
+            const double length = (b - a).norm();
+            const double next = hit->fraction + 1e-9 + 1e-7 * clearance_ / std::max(length, 1e-300);
+            if (next >= 1.0) break;
+            start = start + next * (1.0 - start);
+            a += next * (b - a);
+        }
+    }
+    return first;
+}
+
+void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<const GuardedMotion> motion,
+                         double particle_mass, Stopped& out) const
+{
+    constexpr int kMaxBounces = 4; // a corner of three walls takes three
+    const Vec3d a = from.head<3>().cast<double>();
+    Vec3d b = to.head<3>().cast<double>();
+    Vec3d v = velocity.head<3>().cast<double>();
+    bool stopped = false;
+    const auto give = [&](std::size_t k, const Vec3d& at, const Vec3d& impulse) {
+        out.reactions.push_back({k, {impulse, (at - motion[k].before.position).cross(impulse)}});
+    };
+    for (int bounce = 0; bounce <= kMaxBounces; ++bounce) {
+        const auto hit = first_hit(a, b, motion);
+        if (!hit) break;
+        stopped = true;
+        const GuardedMotion& solid = motion[hit->surface];
+        const Vec3d at = a + hit->fraction * (b - a);
+        const Vec3d wall_velocity = solid.twist.at(at - solid.before.position);
+        const double approach = (v - wall_velocity).dot(hit->normal);
+        if (approach < 0.0) {
+            v -= approach * hit->normal;
+            give(hit->surface, at, particle_mass * approach * hit->normal);
+        }
+        // Slide along the surface: what is beyond it of the way is taken off, and a little more.
+        const double beyond = (b - at).dot(hit->normal);
+        b += (clearance_ - beyond) * hit->normal;
+        if (bounce == kMaxBounces) {
+            // No way found in a narrow place: go with the surface from where the particle was.
+            b = solid.after.to_world(solid.before.to_body(a));
+            give(hit->surface, at, particle_mass * (v - wall_velocity));
+            v = wall_velocity;
+            if (first_hit(a, b, motion)) ++out.report.leaked;
+        }
+    }
+    if (!stopped) return;
+    ++out.report.stopped;
+    to.head<3>() = b.cast<Scalar>();
+    velocity.head<3>() = v.cast<Scalar>();
+}
+
+} // namespace flotsam

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "flotsam/core/parallel.hpp"
+#include "flotsam/geometry/surface_query.hpp"
+#include "world/distance_bounds.hpp"
+
+#include <span>
+#include <vector>
+
+namespace flotsam {
+
+/// A surface that particles may not pass.
+struct GuardedSurface {
+    const SurfaceQuery* query = nullptr;
+    bool stops_along_normals = false;  ///< motion along the triangles' normals is stopped: a container
+    bool stops_against_normals = true; ///< motion against them is stopped: a body
+};
+
+/// Where a guarded surface is at both ends of a step.
+struct GuardedMotion {
+    Pose before, after;
+    Twist twist; ///< about before.position
+};
+
+/// What the guard did in one step.
+struct GuardReport {
+    int stopped = 0; ///< particles put back in front of a surface
+    int leaked = 0;  ///< particles that could not be kept
+};
+
+/// Stops particles whose path in this step would pass through a surface: each is put back in front of it, its velocity
+/// toward the surface is taken away, and the momentum is given to the surface's owner. A cheap bound of the
+/// distance clears nearly all particles; the rest ask SurfaceQuery.
+class WallGuard {
+  public:
+    void build(std::vector<GuardedSurface> surfaces, double particle_spacing, const Workers& workers);
+
+    /// `from` and `to`: positions at both ends of the step; `to` and `velocity` are corrected. `impulses`: one per
+    /// surface, about motion.before.position, added to.
+    GuardReport stop(std::span<const Vec4> from, std::span<Vec4> to, std::span<Vec4> velocity,
+                     std::span<const GuardedMotion> motion, double particle_mass, const Workers& workers,
+                     std::span<Wrench> impulses);
+
+  private:
+    struct Reaction {
+        std::size_t surface;
+        Wrench impulse;
+    };
+    struct Stopped {
+        GuardReport report;
+        std::vector<Reaction> reactions;
+    };
+    struct Hit {
+        std::size_t surface;
+        double fraction;
+        Vec3d normal; ///< world frame, against the motion
+    };
+    [[nodiscard]] bool may_hit(const Vec3d& from, const Vec3d& to, std::span<const GuardedMotion> motion) const;
+    [[nodiscard]] std::optional<Hit> first_hit(const Vec3d& from, const Vec3d& to,
+                                               std::span<const GuardedMotion> motion) const;
+    void stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<const GuardedMotion> motion,
+                  double particle_mass, Stopped& out) const;
+
+    std::vector<GuardedSurface> surfaces_;
+    std::vector<DistanceBounds> bounds_;
+    double clearance_ = 0.0; ///< how far in front of a surface a stopped particle is put [m]
+    std::vector<Stopped> chunks_;
+};
+
+} // namespace flotsam
