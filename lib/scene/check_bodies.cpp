@@ -156,38 +156,24 @@ Passage passage_out_of(const Tank& tank, const PlacedBody& body)
     return out;
 }
 
-void check_container(const SceneFile& scene, const std::vector<Tank>& tanks, const PlacedBody& body, double tolerance)
+/// All that is outside a container is solid to the fluid, so a body must be inside of every one.
+void check_container(const SceneFile& scene, const Tank& tank, const PlacedBody& body, double tolerance)
 {
-    const Tank* nearest = nullptr;
-    Passage best;
-    for (const Tank& tank : tanks) {
-        if (!tank.holds_water) continue;
-        const Passage out = passage_out_of(tank, body);
-        if (out.depth <= tolerance) return;
-        if (!nearest || out.depth < best.depth) {
-            nearest = &tank;
-            best = out;
-        }
-    }
-    if (!nearest) return;
-    if (best.wholly)
-        refuse(scene, body.name,
-               "is outside the tank, beyond the " + std::string(best.side) + " side of " + nearest->wall->name);
+    const Passage out = passage_out_of(tank, body);
+    if (out.depth <= tolerance) return;
+    const std::string side = std::string(out.side) + (tank.closed ? "" : " side");
+    if (out.wholly) refuse(scene, body.name, "is outside the tank, beyond the " + side + " of " + tank.wall->name);
     refuse(scene, body.name,
-           "overlaps " + nearest->wall->name + ": it reaches " + millimetres(best.depth) + " through its " + best.side +
-               (nearest->closed ? "" : " side"));
+           "overlaps " + tank.wall->name + ": it reaches " + millimetres(out.depth) + " through its " + side);
 }
 
-void check_obstacles(const SceneFile& scene, const std::vector<Tank>& tanks, const PlacedBody& body, double tolerance)
+void check_obstacle(const SceneFile& scene, const Tank& tank, const PlacedBody& body, double tolerance)
 {
-    for (const Tank& tank : tanks) {
-        double depth = tank.settings->mesh ? wall_in_body(tank.wall->mesh, body, scene.particle_spacing) : -1.0;
-        if (tank.closed && !tank.holds_water && tank.settings->side != WallSide::both)
-            for (const Vec3d& point : body.surface)
-                depth = std::max(depth,
-                                 tank.closed->bounds().contains(point) ? -tank.closed->signed_distance(point) : -1.0);
-        if (depth > tolerance) refuse(scene, body.name, "overlaps " + tank.wall->name + " by " + millimetres(depth));
-    }
+    double depth = tank.settings->mesh ? wall_in_body(tank.wall->mesh, body, scene.particle_spacing) : -1.0;
+    if (tank.closed && !tank.holds_water && tank.settings->side != WallSide::both)
+        for (const Vec3d& point : body.surface)
+            if (tank.closed->bounds().contains(point)) depth = std::max(depth, -tank.closed->signed_distance(point));
+    if (depth > tolerance) refuse(scene, body.name, "overlaps " + tank.wall->name + " by " + millimetres(depth));
 }
 
 /// Open meshes have no inside, but nothing belongs beside or below all walls.
@@ -223,8 +209,11 @@ void check_bodies(const SceneFile& scene, const PreparedScene& prepared)
         bodies.emplace_back(scene.bodies[k].name, prepared.bodies[k], scene);
     const std::vector<Tank> tanks = tanks_of(scene, prepared);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
-        check_container(scene, tanks, bodies[k], tolerance);
-        check_obstacles(scene, tanks, bodies[k], tolerance);
+        for (const Tank& tank : tanks)
+            if (tank.holds_water)
+                check_container(scene, tank, bodies[k], tolerance);
+            else
+                check_obstacle(scene, tank, bodies[k], tolerance);
         check_bounds_of_walls(scene, prepared, bodies[k]);
         for (std::size_t other = 0; other < k; ++other) check_pair(scene, bodies[other], bodies[k], tolerance);
     }

@@ -44,14 +44,12 @@ Aabb clipped(Aabb block, const SceneWall& wall)
     return block;
 }
 
-/// Blocks are cut here by a box wall that is the only one: of several it is not known which one a block is meant for.
 void add_blocks(const SceneFile& scene, PreparedScene& prepared)
 {
-    const auto is_box = [](const SceneWall& wall) { return !wall.mesh; };
-    const bool cuts = std::count_if(scene.walls.begin(), scene.walls.end(), is_box) == 1;
     for (std::size_t k = 0; k < scene.fluid.blocks.size(); ++k) {
         SceneBlock block = scene.fluid.blocks[k];
-        if (cuts) block.box = clipped(block.box, *std::find_if(scene.walls.begin(), scene.walls.end(), is_box));
+        for (const SceneWall& wall : scene.walls)
+            if (!wall.mesh) block.box = clipped(block.box, wall);
         const std::string name = "fluids[0].blocks[" + std::to_string(k) + "]";
         if (block.box.empty() || !(block.box.size().minCoeff() > 0.0)) {
             prepared.notes.push_back(name + " lies outside the walls and was left out");
