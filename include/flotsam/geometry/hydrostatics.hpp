@@ -14,7 +14,7 @@ struct Submerged {
 };
 
 /// Exact for the closed mesh: each triangle is clipped at the plane z = water_level. `pose` places mesh points in the
-/// world.
+/// world. A face that lies in the plane counts as above it.
 [[nodiscard]] Submerged submerged_part(const TriangleMesh& closed, const Pose& pose, double water_level);
 
 /// Height of the mesh's lowest vertex in the world [m].

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "geometry/offset_surface.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace flotsam {
+
+/// Dense random points of an offset surface.
+struct SampleCandidates {
+    std::vector<OffsetPoint> points;
+    double area_each = 0.0;         ///< of the surface that each stands for [m^2]
+    std::vector<Vec3d> bare;        ///< points of the mesh that have no offset point straight below
+    std::vector<Vec3d> bare_inward; ///< and the directions that were tried
+};
+
+/// About `per_area` candidates a square metre: below the triangles, and where the solid bends around an edge or a
+/// vertex by more than 180 degrees, on arcs and caps around it.
+[[nodiscard]] SampleCandidates sample_candidates(const OffsetSurface& offset, double per_area, std::uint64_t seed);
+
+} // namespace flotsam

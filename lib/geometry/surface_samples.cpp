@@ -1,0 +1,172 @@
+#include "flotsam/geometry/surface_samples.hpp"
+
+#include "flotsam/core/contracts.hpp"
+#include "geometry/blue_noise.hpp"
+#include "geometry/outline_samples.hpp"
+#include "geometry/point_grid.hpp"
+#include "geometry/sample_candidates.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace flotsam {
+namespace {
+
+constexpr double kCandidates = 10.0; ///< per sample
+constexpr double kHexagonal =
+    1.0746;                    ///< distance of neighbours in a hexagonal lattice of unit area each, sqrt(2/sqrt 3)
+constexpr double kReach = 1.5; ///< spacings up to which samples push each other
+constexpr double kPush = 0.12; ///< spacings a lone pair at zero distance moves apart in one step
+constexpr int kSteps = 40;
+constexpr double kClosest = 0.75; ///< spacings: the closer one of a pair goes
+constexpr double kHole = 0.85;    ///< spacings from the next sample: a candidate becomes one
+
+std::vector<Vec3d> positions_of(const std::vector<OffsetPoint>& points)
+{
+    std::vector<Vec3d> positions;
+    positions.reserve(points.size());
+    for (const OffsetPoint& point : points) positions.push_back(point.position);
+    return positions;
+}
+
+/// Area of the surface that candidates stand for. The two layers of a solid little thicker than two insets, and the
+/// one layer of a thinner one that candidates reach from both sides, count as one.
+double covered_area(const SampleCandidates& candidates, double spacing)
+{
+    const double reach = 0.6 * spacing;
+    const PointGrid grid(positions_of(candidates.points), reach);
+    double area = 0.0;
+    for (const OffsetPoint& point : candidates.points) {
+        int same = 0, opposite = 0;
+        grid.for_near(point.position, reach, [&](std::size_t j, double) {
+            ++(candidates.points[j].direction.dot(point.direction) > -0.5 ? same : opposite);
+        });
+        area += candidates.area_each * same / (same + opposite);
+    }
+    return area;
+}
+
+double rim_length(const OffsetSurface& offset)
+{
+    double length = 0.0;
+    const TriangleMesh& mesh = offset.surface().mesh();
+    for (const MeshEdge& edge : offset.topology().edges)
+        if (edge.triangles == 1)
+            length +=
+                (mesh.vertices[static_cast<std::size_t>(edge.b)] - mesh.vertices[static_cast<std::size_t>(edge.a)])
+                    .norm();
+    return length;
+}
+
+/// One step in which samples push their neighbours along the surface.
+void repel(std::vector<OffsetPoint>& samples, const OffsetSurface& offset, double spacing)
+{
+    const double reach = kReach * spacing;
+    const std::vector<Vec3d> before = positions_of(samples);
+    const PointGrid grid(before, reach);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        Vec3d push = Vec3d::Zero();
+        grid.for_near(before[i], reach, [&](std::size_t j, double distance_sq) {
+            if (j == i || distance_sq == 0.0) return;
+            const double distance = std::sqrt(distance_sq), gap = 1.0 - distance / reach;
+            push += gap * gap / distance * (before[i] - before[j]);
+        });
+        push *= kPush * spacing;
+        const double length = push.norm(), longest = 0.15 * spacing;
+        if (length > longest) push *= longest / length;
+        if (const auto moved = offset.project(before[i] + push, samples[i])) samples[i] = *moved;
+    }
+}
+
+void drop_crowded(std::vector<OffsetPoint>& samples, double closest)
+{
+    const PointGrid grid(positions_of(samples), closest);
+    std::vector<bool> dropped(samples.size(), false);
+    std::vector<OffsetPoint> kept;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        grid.for_near(samples[i].position, closest,
+                      [&](std::size_t j, double) { dropped[i] = dropped[i] || (j < i && !dropped[j]); });
+        if (!dropped[i]) kept.push_back(samples[i]);
+    }
+    samples = std::move(kept);
+}
+
+/// Candidates farther than `hole` from every sample become samples, farthest first.
+bool fill_holes(std::vector<OffsetPoint>& samples, const SampleCandidates& candidates, double hole)
+{
+    const PointGrid grid(positions_of(samples), hole);
+    std::vector<OffsetPoint> lonely;
+    for (const OffsetPoint& point : candidates.points)
+        if (grid.nearest(point.position, hole) >= hole) lonely.push_back(point);
+    for (std::size_t i = 0; i < lonely.size(); ++i) {
+        bool free = true;
+        for (std::size_t k = 0; k < i && free; ++k)
+            free = (lonely[k].position - lonely[i].position).norm() > hole || lonely[k].depth < 0.0;
+        if (free) {
+            samples.push_back(lonely[i]);
+        } else {
+            lonely[i].depth = -1.0; // not taken: does not stand in the way of later ones
+        }
+    }
+    return !lonely.empty();
+}
+
+/// Parts that are thin in two directions or more (rods, specks) have no layer: their deepest points are sampled.
+void sample_rods(std::vector<OffsetPoint>& samples, const SampleCandidates& candidates, const OffsetSurface& offset,
+                 double spacing)
+{
+    const double far = 1.1 * spacing + 1.8 * offset.inset();
+    PointGrid grid(positions_of(samples), std::max(far, spacing));
+    for (std::size_t k = 0; k < candidates.bare.size(); ++k) {
+        if (grid.nearest(candidates.bare[k], far) < far) continue;
+        const OffsetPoint point = offset.deepest_below(candidates.bare[k], candidates.bare_inward[k]);
+        if (grid.nearest(point.position, 0.9 * spacing) < 0.9 * spacing) continue;
+        samples.push_back(point);
+        grid = PointGrid(positions_of(samples), std::max(far, spacing));
+    }
+}
+
+std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const SurfaceSampleSettings& settings)
+{
+    const double d = settings.spacing;
+    const SampleCandidates candidates = sample_candidates(offset, kCandidates / (d * d), settings.seed);
+    std::vector<OffsetPoint> samples;
+    if (!candidates.points.empty()) {
+        const double area = covered_area(candidates, d) + 0.5 * d * rim_length(offset);
+        const auto count = static_cast<std::size_t>(std::max(1.0, std::round(area / (d * d))));
+        for (std::size_t i : eliminate_crowded(positions_of(candidates.points), count, kHexagonal * d))
+            samples.push_back(candidates.points[i]);
+        for (int step = 0; step < kSteps; ++step) repel(samples, offset, d);
+        for (int round = 0; round < 3; ++round) {
+            drop_crowded(samples, kClosest * d);
+            if (!fill_holes(samples, candidates, kHole * d)) break;
+            for (int step = 0; step < 5; ++step) repel(samples, offset, d);
+        }
+        drop_crowded(samples, kClosest * d);
+    }
+    sample_rods(samples, candidates, offset, d);
+    return samples;
+}
+
+} // namespace
+
+SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
+{
+    require(settings.spacing > 0.0, "sample spacing must be > 0 [m]", settings.spacing);
+    require(settings.inset >= 0.0, "inset of samples must be >= 0 [m]", settings.inset);
+    require(settings.dimensions == 2 || settings.dimensions == 3, "dimensions must be 2 or 3", settings.dimensions);
+
+    const std::vector<OffsetPoint> points =
+        settings.dimensions == 2 ? sample_outline(surface, settings) : sample_layer({surface, settings}, settings);
+    SurfaceSamples samples;
+    std::size_t thin = 0;
+    for (const OffsetPoint& point : points) {
+        samples.positions.push_back(point.position);
+        samples.depth.push_back(point.depth);
+        thin += point.thin ? 1 : 0;
+    }
+    if (!points.empty()) samples.thin_fraction = static_cast<double>(thin) / static_cast<double>(points.size());
+    return samples;
+}
+
+} // namespace flotsam
