@@ -1,0 +1,71 @@
+#include "bullet/kinematic_motion.hpp"
+
+#include "bullet/convert.hpp"
+
+#include <LinearMath/btMotionState.h>
+#include <LinearMath/btTransformUtil.h>
+
+namespace flotsam {
+
+namespace {
+
+/// Where Bullet will find the body at the end of the step.
+btTransform target_pose(const btRigidBody& body)
+{
+    btTransform pose = body.getWorldTransform();
+    if (body.getMotionState() != nullptr) body.getMotionState()->getWorldTransform(pose);
+    return pose;
+}
+
+} // namespace
+
+Pose KinematicMotion::start_pose(const btRigidBody& body)
+{
+    return from_bullet(body.getInterpolationWorldTransform()); // where Bullet's last step left it
+}
+
+void KinematicMotion::start(btRigidBody& body)
+{
+    *this = {};
+    seen_pose_ = target_pose(body);
+    body.setWorldTransform(seen_pose_);
+    body.setInterpolationWorldTransform(seen_pose_);
+}
+
+Twist KinematicMotion::plan(const btRigidBody& body, double dt)
+{
+    const btTransform target = target_pose(body);
+    if (!(target == seen_pose_)) {
+        set_linear_ = set_angular_ = btVector3(0, 0, 0);
+        btVector3 linear, angular;
+        btTransformUtil::calculateVelocity(body.getInterpolationWorldTransform(), target, static_cast<btScalar>(dt),
+                                           linear, angular);
+        return twist_from_bullet(linear, angular);
+    }
+    if (!(body.getLinearVelocity() == seen_linear_) || !(body.getAngularVelocity() == seen_angular_)) {
+        set_linear_ = body.getLinearVelocity();
+        set_angular_ = body.getAngularVelocity();
+    }
+    return twist_from_bullet(set_linear_, set_angular_);
+}
+
+void KinematicMotion::move(btRigidBody& body, double dt) const
+{
+    const bool has_velocity = !set_linear_.isZero() || !set_angular_.isZero();
+    if (!has_velocity && target_pose(body) == seen_pose_) return;
+    body.activate(true); // Bullet reads no pose of a sleeping kinematic body
+    if (!has_velocity) return;
+    btTransform next;
+    btTransformUtil::integrateTransform(seen_pose_, set_linear_, set_angular_, static_cast<btScalar>(dt), next);
+    if (body.getMotionState() != nullptr) body.getMotionState()->setWorldTransform(next);
+    body.setWorldTransform(next);
+}
+
+void KinematicMotion::finish(const btRigidBody& body)
+{
+    seen_pose_ = target_pose(body);
+    seen_linear_ = body.getLinearVelocity();
+    seen_angular_ = body.getAngularVelocity();
+}
+
+} // namespace flotsam

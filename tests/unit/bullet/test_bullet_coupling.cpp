@@ -1,0 +1,70 @@
+#include "bullet/step_plan.hpp"
+#include "bullet_scene.hpp"
+#include "flotsam/bullet/bullet_coupling.hpp"
+#include "support/catch.hpp"
+
+using namespace flotsam;
+using namespace flotsam::test;
+
+TEST_CASE("steps fill a time exactly and without a sliver", "[bullet]")
+{
+    const double allowed = 0.004, seconds = GENERATE(0.1, 0.0999, 0.0041, 0.004, 0.003, 1.0 / 30.0);
+    double left = seconds, shortest = 1.0;
+    int steps = 0;
+    for (; left > 0.0 && steps < 1000; ++steps) {
+        const double dt = next_step(left, allowed);
+        REQUIRE(dt <= allowed);
+        shortest = std::min(shortest, dt);
+        left -= dt;
+    }
+    CHECK(left == 0.0);
+    CHECK(steps == static_cast<int>(std::ceil(seconds / allowed - 1e-9)));
+    CHECK(shortest > (seconds > allowed ? 0.49 * allowed : 0.99 * seconds));
+}
+
+TEST_CASE("bodies get the numbers that they have in the fluid", "[bullet]")
+{
+    BulletScene scene;
+    btRigidBody& first = scene.add_box(1.0);
+    btRigidBody& second = scene.add_box(0.0, Vec3d(3, 0, 0));
+    FluidWorld fluid({});
+    BulletCoupling coupling(fluid, scene.world);
+    CHECK(coupling.add(first) == 0);
+    CHECK(coupling.add(second, mesh_of(*second.getCollisionShape(), 0.1)) == 1);
+    CHECK(&coupling.body(1) == &second);
+    CHECK(coupling.bodies().size() == 2);
+    CHECK(fluid.body_count() == 2);
+    CHECK(first.getAngularFactor() == btVector3(1, 1, 1)); // three dimensions lock nothing
+}
+
+TEST_CASE("in two dimensions a body is locked to the plane beside its own locks", "[bullet]")
+{
+    BulletScene scene;
+    btRigidBody& body = scene.add_box(1.0);
+    body.setLinearFactor(btVector3(0, 1, 1));
+    FluidWorldSettings settings;
+    settings.dimensions = 2;
+    FluidWorld fluid(settings);
+    BulletCoupling coupling(fluid, scene.world);
+    coupling.add(body);
+    CHECK(body.getLinearFactor() == btVector3(0, 0, 1));
+    CHECK(body.getAngularFactor() == btVector3(0, 1, 0));
+}
+
+TEST_CASE("the coupling refuses bodies it cannot couple", "[bullet]")
+{
+    BulletScene scene;
+    btRigidBody& body = scene.add_box(1.0);
+    btBoxShape shape(btVector3(1, 1, 1));
+    btRigidBody outside(1, nullptr, &shape, btVector3(1, 1, 1)), shapeless(1, nullptr, nullptr);
+    FluidWorld fluid({});
+    BulletCoupling coupling(fluid, scene.world);
+    CHECK_THROWS_AS(coupling.add(outside), std::invalid_argument);
+    CHECK_THROWS_AS(coupling.add(shapeless), std::invalid_argument);
+    coupling.add(body);
+    CHECK_THROWS_AS(coupling.add(body), std::invalid_argument);
+    CHECK(fluid.body_count() == 1);
+    CHECK_THROWS_AS(coupling.body(1), std::invalid_argument);
+    CHECK_THROWS_AS(coupling.step(0.0), std::invalid_argument);
+    CHECK_THROWS_AS(coupling.step_for(-1.0), std::invalid_argument);
+}
