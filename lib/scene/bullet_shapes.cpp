@@ -133,7 +133,7 @@ btTransform to_bullet(const Pose& pose)
 {
     const Quatd& q = pose.orientation;
     return btTransform(btQuaternion(to_scalar(q.x()), to_scalar(q.y()), to_scalar(q.z()), to_scalar(q.w())),
-            to_bullet(pose.position));
+                       to_bullet(pose.position));
 }
 
 Vec3d from_bullet(const btVector3& v)

@@ -3,7 +3,7 @@
 #include "flotsam/core/parallel.hpp"
 #include "flotsam/io/csv.hpp"
 #include "flotsam/io/output_directory.hpp"
-#include "flotsam/io/renderer.hpp"
+#include "flotsam/io/picture.hpp"
 #include "flotsam/io/vtk.hpp"
 #include "scene/run_tally.hpp"
 #include "scene/scene_world.hpp"

@@ -11,10 +11,22 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// JSON has no NaN: null.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
-Json vector(const Vec3d& v) { return Json::array({number(v.x()), number(v.y()), number(v.z())}); }
-Json mean_and_max(const MeanAndMax& value) { return {{"mean", number(value.mean)}, {"max", number(value.max)}}; }
+Json number(double value)
+{
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+Json number(const std::optional<double>& value)
+{
+    return value ? number(*value) : Json(nullptr);
+}
+Json vector(const Vec3d& v)
+{
+    return Json::array({number(v.x()), number(v.y()), number(v.z())});
+}
+Json mean_and_max(const MeanAndMax& value)
+{
+    return {{"mean", number(value.mean)}, {"max", number(value.max)}};
+}
 
 std::string hexadecimal(std::uint64_t value)
 {

@@ -161,7 +161,8 @@ MomentumLedger RunTally::report_ledger() const
     const double scale = std::max({gained.norm(), ledger.wall_impulse.norm(), ledger.body_impulse.norm(),
                                    ledger.gravity_impulse.norm(), ledger.fluid_momentum_start.norm()});
     ledger.momentum_error_relative = scale > 0.0 ? error / scale : 0.0;
-    for (const TimeMean<Vec3d>& force : wall_forces_) ledger.wall_force_mean.push_back(force.mean().value_or(Vec3d::Zero()));
+    for (const TimeMean<Vec3d>& force : wall_forces_)
+        ledger.wall_force_mean.push_back(force.mean().value_or(Vec3d::Zero()));
     return ledger;
 }
 

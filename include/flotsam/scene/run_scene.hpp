@@ -4,6 +4,7 @@
 #include "flotsam/scene/scene_file.hpp"
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
