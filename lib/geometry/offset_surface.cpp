@@ -6,7 +6,9 @@
 namespace flotsam {
 namespace {
 
-constexpr double kOpposite = -0.5; ///< cosine below which the two nearest walls make a part thin, not a wedge
+constexpr int kShrinkSteps = 16;
+constexpr double kShallowest = 0.05; ///< of the inset: the last bit of a wedge's tip goes without samples
+constexpr double kOpposite = -0.5;   ///< cosine below which the two nearest walls make a part thin, not a wedge
 
 Vec3d unit_normal(const TriangleMesh& mesh, std::size_t t)
 {
@@ -34,20 +36,22 @@ std::optional<OffsetPoint> OffsetSurface::below(const Vec3d& base, const Vec3d& 
     if (inset_ == 0.0) return point;
     // Shrinking ball (Ma, Bae & Choi 2012): the ball that touches the surface at `base` and holds no other point of it.
     Vec3d other = base;
-    for (int step = 0; step < 12; ++step) {
+    for (int step = 0; step < kShrinkSteps; ++step) {
         const auto nearest = surface_.closest(point.position);
-        if (nearest.distance >= point.depth - kTolerance * inset_) break;
+        if (nearest.distance >= (1.0 - kTolerance) * point.depth) {
+            if (!point.thin) return point;
+            const Vec3d to_other = (other - point.position).normalized();
+            if (to_other.dot(-direction) < kOpposite) return point;
+            return std::nullopt;
+        }
         const Vec3d chord = nearest.point - base;
-        const double along = direction.dot(chord);
-        if (!(along > 0.0)) return std::nullopt;
+        const double along = direction.dot(chord), depth = chord.squaredNorm() / (2.0 * along);
+        if (!(along > 0.0 && depth > kShallowest * inset_)) return std::nullopt;
         other = nearest.point;
-        point.depth = std::min(point.depth, chord.squaredNorm() / (2.0 * along));
+        point.depth = std::min(point.depth, depth);
         point.position = base + point.depth * direction;
         point.thin = true;
     }
-    if (!point.thin) return point;
-    const Vec3d to_other = (other - point.position).normalized();
-    if (to_other.dot(-direction) < kOpposite) return point;
     return std::nullopt;
 }
 

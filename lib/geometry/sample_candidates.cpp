@@ -55,8 +55,7 @@ class Sampler {
             if (const auto point = offset_.below(base, inward)) {
                 result_.points.push_back(*point);
             } else {
-                result_.bare.push_back(base);
-                result_.bare_inward.push_back(inward);
+                result_.bare.push_back({base, inward});
             }
         }
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/offset_surface.hpp"
+#include "geometry/sample_rods.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -10,9 +11,8 @@ namespace flotsam {
 /// Dense random points of an offset surface.
 struct SampleCandidates {
     std::vector<OffsetPoint> points;
-    double area_each = 0.0;         ///< of the surface that each stands for [m^2]
-    std::vector<Vec3d> bare;        ///< points of the mesh that have no offset point straight below
-    std::vector<Vec3d> bare_inward; ///< and the directions that were tried
+    double area_each = 0.0; ///< of the surface that each stands for [m^2]
+    std::vector<BarePoint> bare;
 };
 
 /// About `per_area` candidates a square metre: below the triangles, and where the solid bends around an edge or a

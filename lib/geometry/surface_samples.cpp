@@ -5,6 +5,7 @@
 #include "geometry/outline_samples.hpp"
 #include "geometry/point_grid.hpp"
 #include "geometry/sample_candidates.hpp"
+#include "geometry/sample_rods.hpp"
 
 #include <cmath>
 #include <limits>
@@ -20,14 +21,6 @@ constexpr double kPush = 0.12; ///< spacings a lone pair at zero distance moves 
 constexpr int kSteps = 40;
 constexpr double kClosest = 0.75; ///< spacings: the closer one of a pair goes
 constexpr double kHole = 0.85;    ///< spacings from the next sample: a candidate becomes one
-
-std::vector<Vec3d> positions_of(const std::vector<OffsetPoint>& points)
-{
-    std::vector<Vec3d> positions;
-    positions.reserve(points.size());
-    for (const OffsetPoint& point : points) positions.push_back(point.position);
-    return positions;
-}
 
 /// Area of the surface that candidates stand for. The two layers of a solid little thicker than two insets, and the
 /// one layer of a thinner one that candidates reach from both sides, count as one.
@@ -111,21 +104,6 @@ bool fill_holes(std::vector<OffsetPoint>& samples, const SampleCandidates& candi
     return !lonely.empty();
 }
 
-/// Parts that are thin in two directions or more (rods, specks) have no layer: their deepest points are sampled.
-void sample_rods(std::vector<OffsetPoint>& samples, const SampleCandidates& candidates, const OffsetSurface& offset,
-                 double spacing)
-{
-    const double far = 1.1 * spacing + 1.8 * offset.inset();
-    PointGrid grid(positions_of(samples), std::max(far, spacing));
-    for (std::size_t k = 0; k < candidates.bare.size(); ++k) {
-        if (grid.nearest(candidates.bare[k], far) < far) continue;
-        const OffsetPoint point = offset.deepest_below(candidates.bare[k], candidates.bare_inward[k]);
-        if (grid.nearest(point.position, 0.9 * spacing) < 0.9 * spacing) continue;
-        samples.push_back(point);
-        grid = PointGrid(positions_of(samples), std::max(far, spacing));
-    }
-}
-
 std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const SurfaceSampleSettings& settings)
 {
     const double d = settings.spacing;
@@ -144,7 +122,7 @@ std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const Surface
         }
         drop_crowded(samples, kClosest * d);
     }
-    sample_rods(samples, candidates, offset, d);
+    sample_rods(samples, candidates.bare, offset, d);
     return samples;
 }
 

@@ -63,8 +63,8 @@ inline TriangleMesh prism(const std::vector<Eigen::Vector2d>& outline, double ha
         for (const auto& p : outline) mesh.vertices.emplace_back(p.x(), y, p.y());
     for (int i = 0; i < n; ++i) {
         const int next = (i + 1) % n;
-        mesh.triangles.push_back({i, next, next + n});
-        mesh.triangles.push_back({i, next + n, i + n});
+        mesh.triangles.push_back({i, next + n, next});
+        mesh.triangles.push_back({i, i + n, next + n});
     }
     for (int i = 1; i + 1 < n; ++i) {
         mesh.triangles.push_back({0, i, i + 1});

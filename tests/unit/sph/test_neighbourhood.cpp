@@ -1,0 +1,70 @@
+#include "flotsam/sph/kernel.hpp"
+#include "flotsam/sph/neighbourhood.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <random>
+
+using namespace flotsam;
+
+namespace {
+
+std::vector<Vec4> random_points(std::size_t count, unsigned seed, double size)
+{
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<Scalar> place(0, static_cast<Scalar>(size));
+    std::vector<Vec4> points(count);
+    for (Vec4& p : points) p = Vec4(place(random), place(random), place(random), 0);
+    return points;
+}
+
+} // namespace
+
+TEST_CASE("neighbours are those of brute force", "[sph][oracle]")
+{
+    const std::size_t count = GENERATE(0u, 1u, 2u, 255u, 256u, 257u, 900u);
+    const std::size_t max_cells = GENERATE(8u, 100000u); // few cells: points outside fall into border cells
+    const int threads = GENERATE(1, 2);
+    const double support = 0.15;
+    const std::vector<Vec4> a = random_points(count, 1, 1.0), b = random_points(count / 2 + 1, 2, 1.0);
+    const Workers workers(threads);
+    const CellGrid grid = CellGrid::around(a, b, support, max_cells);
+    CHECK(grid.size() <= max_cells);
+    CellLists of_a, of_b;
+    of_a.build(grid, a, workers);
+    of_b.build(grid, b, workers);
+    const CubicSpline kernel(support, 3);
+    const bool same = GENERATE(true, false);
+    const std::vector<Vec4>& others = same ? a : b;
+    NeighbourSearch search;
+    Pairs pairs;
+    search.find(kernel, grid, same ? of_a : of_b, a, others, same, workers, pairs);
+    REQUIRE(pairs.rows() == count);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::vector<std::uint32_t> expected;
+        for (std::uint32_t j = 0; j < others.size(); ++j) {
+            const bool near = (a[i] - others[j]).head<3>().squaredNorm() < static_cast<Scalar>(support * support);
+            if (near && !(same && i == j)) expected.push_back(j);
+        }
+        std::vector<std::uint32_t> found(pairs.index.begin() + pairs.start[i], pairs.index.begin() + pairs.start[i + 1]);
+        std::sort(found.begin(), found.end());
+        CHECK(found == expected);
+    }
+}
+
+TEST_CASE("a point far away costs no memory and no neighbour is lost", "[sph]")
+{
+    std::vector<Vec4> points = random_points(100, 3, 0.2);
+    points.push_back(Vec4(Scalar(1e6), 0, 0, 0));
+    points.push_back(Vec4(Scalar(1e6) + Scalar(0.0625), 0, 0, 0));
+    const Workers workers(1);
+    const CellGrid grid = CellGrid::around(points, {}, 0.1, 5000);
+    CHECK(grid.size() <= 5000);
+    CellLists cells;
+    cells.build(grid, points, workers);
+    NeighbourSearch search;
+    Pairs pairs;
+    search.find(CubicSpline(0.1, 3), grid, cells, points, points, true, workers, pairs);
+    CHECK(pairs.start[101] - pairs.start[100] == 1);
+    CHECK(pairs.start[102] - pairs.start[101] == 1);
+}
