@@ -1,0 +1,71 @@
+#include "flotsam/io/csv.hpp"
+
+#include "flotsam/core/contracts.hpp"
+#include "io/output_file.hpp"
+
+#include <array>
+#include <charconv>
+
+namespace flotsam {
+
+namespace {
+
+std::string quoted(const std::string& name)
+{
+    if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+    std::string result = "\"";
+    for (const char c : name) {
+        if (c == '"') result += '"';
+        result += c;
+    }
+    return result + '"';
+}
+
+void append_number(std::string& line, double value)
+{
+    std::array<char, 32> digits{};
+    // Not printf: its decimal point follows the locale.
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 9);
+    line.append(digits.data(), end.ptr);
+}
+
+} // namespace
+
+CsvWriter::CsvWriter(const std::filesystem::path& file, std::span<const std::string> columns) : columns_(columns.size())
+{
+    require(!columns.empty(), "a table must have at least one column");
+    file_ = std::make_unique<OutputFile>(file, /*keep_if_unfinished=*/true);
+    for (const std::string& name : columns) {
+        if (!line_.empty()) line_ += ',';
+        line_ += quoted(name);
+    }
+    file_->write(line_ + '\n');
+    file_->flush();
+}
+
+CsvWriter::~CsvWriter() = default;
+CsvWriter::CsvWriter(CsvWriter&&) noexcept = default;
+CsvWriter& CsvWriter::operator=(CsvWriter&&) noexcept = default;
+
+void CsvWriter::row(std::span<const double> values)
+{
+    require(file_ != nullptr, "a closed table takes no rows");
+    require(values.size() == columns_, "a row must have one value per column", values.size());
+    line_.clear();
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        if (k > 0) line_ += ',';
+        append_number(line_, values[k]);
+    }
+    line_ += '\n';
+    file_->write(line_);
+    file_->flush();
+}
+
+void CsvWriter::close()
+{
+    if (file_ == nullptr) return;
+    file_->close();
+    file_.reset();
+}
+
+} // namespace flotsam

@@ -1,0 +1,165 @@
+#include "flotsam/io/output_directory.hpp"
+
+#include "flotsam/core/contracts.hpp"
+#include "flotsam/io/output_error.hpp"
+#include "io/output_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include <unistd.h>
+
+namespace flotsam {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void check(const std::error_code& error, const std::string& attempt)
+{
+    if (error) throw OutputError("cannot " + attempt + ": " + error.message());
+}
+
+/// A name alone would do for most, but other programs write a report.json too, and what is ours is removed.
+bool is_report_of_ours(const fs::path& file)
+{
+    std::ifstream stream(file);
+    if (!stream) return false;
+    const auto report = nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
+    return report.is_object() && report.contains("version") && report.contains("particles") && report.contains("steps");
+}
+
+void require_replaceable(const fs::path& target)
+{
+    std::error_code error;
+    const fs::file_status status = fs::status(target, error);
+    if (status.type() == fs::file_type::not_found) return;
+    check(status.type() == fs::file_type::none ? error : std::error_code{}, "look at " + target.string());
+    if (!fs::is_directory(status)) {
+        throw InputError("the output directory " + target.string() + " is a file; give the name of a directory");
+    }
+    const bool empty = fs::is_empty(target, error);
+    check(error, "read the directory " + target.string());
+    if (!empty && !is_report_of_ours(target / "report.json")) {
+        throw InputError(
+            "the output directory " + target.string() +
+            " holds something else than an output of flotsam (which has its report.json); give a new or an "
+            "empty directory");
+    }
+}
+
+/// Absolute, links followed, without a slash at its end.
+fs::path settled_name(const fs::path& target)
+{
+    if (target.empty()) throw InputError("the output directory has an empty name");
+    std::error_code error;
+    fs::path name = fs::weakly_canonical(fs::absolute(target), error);
+    if (error) name = fs::absolute(target).lexically_normal();
+    if (!name.has_filename()) name = name.parent_path();
+    return name;
+}
+
+/// The topmost parent of `path` that is not there yet; empty when all are.
+fs::path first_missing_parent(const fs::path& path)
+{
+    fs::path missing;
+    std::error_code ignored;
+    for (fs::path p = path.parent_path(); !fs::exists(p, ignored) && p.has_relative_path(); p = p.parent_path()) {
+        missing = p;
+    }
+    return missing;
+}
+
+/// Renames `from` to the first of BASE, BASE-2, BASE-3, ... that is free.
+fs::path free_name(const fs::path& base)
+{
+    fs::path name = base;
+    std::error_code ignored;
+    for (int k = 2; fs::exists(fs::symlink_status(name, ignored)); ++k) name = base.string() + '-' + std::to_string(k);
+    return name;
+}
+
+fs::path beside(const fs::path& path, const std::string& ending)
+{
+    return path.string() + ending;
+}
+
+} // namespace
+
+void write_text_atomically(const fs::path& file, std::string_view text)
+{
+    const fs::path partial = beside(file, ".partial");
+    OutputFile stream(partial);
+    stream.write(text);
+    stream.close();
+    std::error_code error;
+    fs::rename(partial, file, error);
+    if (!error) return;
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+    check(error, "write " + file.string());
+}
+
+OutputDirectory::OutputDirectory(const fs::path& target)
+    : target_(settled_name(target)), first_made_parent_(first_missing_parent(target_))
+{
+    require_replaceable(target_);
+    path_ = free_name(beside(target_, ".partial-" + std::to_string(::getpid())));
+    std::error_code error;
+    fs::create_directories(path_, error);
+    if (error) remove_traces();
+    check(error, "make the output directory " + target_.string());
+}
+
+OutputDirectory::~OutputDirectory()
+{
+    if (!settled_) remove_traces();
+}
+
+void OutputDirectory::commit()
+{
+    require(!settled_, "an output directory is committed or kept once");
+    require_replaceable(target_);
+    std::error_code error;
+    std::error_code ignored;
+    fs::path old;
+    if (fs::exists(target_, ignored)) {
+        old = free_name(beside(target_, ".old-" + std::to_string(::getpid())));
+        fs::rename(target_, old, error);
+        check(error, "replace the older output " + target_.string());
+    }
+    fs::rename(path_, target_, error);
+    if (error && !old.empty()) fs::rename(old, target_, ignored);
+    check(error, "give the output directory its name " + target_.string());
+    settled_ = true;
+    path_ = target_;
+    if (!old.empty()) fs::remove_all(old, error);
+    check(error, "remove all of the older output, now at " + old.string());
+}
+
+const fs::path& OutputDirectory::keep_partial()
+{
+    if (settled_) return path_;
+    settled_ = true;
+    const fs::path name = beside(target_, ".partial");
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(name, error))) {
+        fs::rename(path_, name, error);
+        if (!error) path_ = name;
+    }
+    return path_;
+}
+
+void OutputDirectory::remove_traces() noexcept
+{
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    if (first_made_parent_.empty()) return;
+    // Upwards while empty: another program may have put something there meanwhile.
+    for (fs::path p = target_.parent_path(); fs::remove(p, ignored) && p != first_made_parent_;) p = p.parent_path();
+}
+
+} // namespace flotsam
