@@ -1,0 +1,80 @@
+#pragma once
+
+#include "flotsam/world/step_report.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flotsam {
+
+/// Where a body ended, and means over the last quarter of the run. A body's position is its centre of mass; its
+/// rotation is that of the scene's shape.
+struct BodyReport {
+    std::string name;
+    std::optional<double> mass;              ///< [kg]
+    double volume = 0.0;                     ///< [m^3] (2-D: per metre)
+    Vec3d position = Vec3d::Zero();          ///< [m]
+    Vec3d rotation_deg = Vec3d::Zero();      ///< rotation vector
+    Vec3d velocity = Vec3d::Zero();          ///< [m/s]
+    double tilt_deg = 0.0;                   ///< between the shape's z axis and the world's
+    std::optional<double> waterline;         ///< mean height of the undisturbed water [m]
+    std::optional<double> draft;             ///< mean of waterline - lowest point [m]
+    std::optional<double> exact_draft;       ///< of the exact mesh in the pose it ended in [m]; nothing: it sinks
+    Vec3d force_fluid_mean = Vec3d::Zero();  ///< [N]
+    Vec3d torque_fluid_mean = Vec3d::Zero(); ///< about the centre of mass [N m]
+};
+
+struct ProbeReport {
+    std::string name;
+    std::optional<double> mean; ///< over the last quarter; nothing where it met no fluid
+    std::optional<double> last;
+};
+
+/// Momentum of the fluid, and where it came from and went over the run [N s].
+struct MomentumLedger {
+    Vec3d gravity_impulse = Vec3d::Zero(); ///< given to the fluid
+    Vec3d wall_impulse = Vec3d::Zero();    ///< given by the fluid to all walls
+    Vec3d body_impulse = Vec3d::Zero();    ///< given by the fluid to all bodies
+    Vec3d guard_impulse = Vec3d::Zero();   ///< the guard's part of the two
+    Vec3d fluid_momentum_start = Vec3d::Zero();
+    Vec3d fluid_momentum_end = Vec3d::Zero();
+    double momentum_error_relative = 0.0; ///< what does not add up / the largest of the terms
+    std::vector<Vec3d> wall_force_mean;   ///< per wall, over the last quarter [N]
+};
+
+struct MeanAndMax {
+    double mean = 0.0, max = 0.0;
+};
+
+/// What a run did; report.json holds the same.
+struct RunReport {
+    std::string version;
+    std::string scene; ///< the scene file
+    int threads = 0;
+    std::size_t fluid_particles = 0, boundary_samples = 0;
+    double particle_spacing = 0.0; ///< [m]
+    double rest_density = 0.0;     ///< [kg/m^3]
+    double simulated_seconds = 0.0;
+    std::int64_t steps = 0;
+    double wall_seconds = 0.0; ///< of stepping and writing
+    StageSeconds stage_seconds;
+    MeanAndMax iterations; ///< per step, of all its solves
+    std::int64_t unconverged_steps = 0;
+    MeanAndMax compression;         ///< mean over the last quarter of each step's mean; maximum of the run
+    int leaked = 0;                 ///< most particles outside at one time
+    std::int64_t leaks_stopped = 0; ///< by the wall guard
+    std::int64_t peak_memory_bytes = 0;
+    std::uint64_t state_hash = 0;
+    MomentumLedger ledger;
+    std::vector<BodyReport> bodies;
+    std::vector<ProbeReport> probes;
+    std::vector<std::string> notes; ///< what was cut or repaired
+    std::string failure;            ///< why the run stopped early; empty: it did not
+};
+
+/// The text of report.json.
+[[nodiscard]] std::string report_as_json(const RunReport& report);
+
+} // namespace flotsam

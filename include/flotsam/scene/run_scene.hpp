@@ -1,0 +1,49 @@
+#pragma once
+
+#include "flotsam/scene/run_report.hpp"
+#include "flotsam/scene/scene_file.hpp"
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace flotsam {
+
+struct RunOptions {
+    std::filesystem::path out; ///< directory of results; empty: no files
+    int threads = 0;           ///< 0: all the machine has
+};
+
+struct RunProgress {
+    double time = 0.0, duration = 0.0; ///< simulated [s]
+    double wall_seconds = 0.0;         ///< since the first step
+    std::int64_t steps = 0;
+};
+
+/// Is told how a run goes on.
+class RunObserver {
+  public:
+    virtual ~RunObserver() = default;
+    /// Once, before the first step.
+    virtual void on_start(std::size_t fluid_particles, std::size_t boundary_samples,
+                          const std::vector<std::string>& notes) = 0;
+    /// After each step.
+    virtual void on_step(const RunProgress& progress) = 0;
+};
+
+/// The physics came apart, or results could not be written; what() is one sentence.
+class RunFailure : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Checks a scene, builds the fluid and its Bullet world, runs it and records it: report.json, history.csv, and what
+/// the scene's output asks for. Frames come at exact times; one at the start, one at the end.
+///
+/// Throws InputError as check_scene does, before the directory of an older run is touched. Throws RunFailure for a
+/// state that is not finite and for results that cannot be written; what was recorded until then stays in
+/// `OUT.partial`.
+RunReport run_scene(const SceneFile& scene, const RunOptions& options, RunObserver& observer);
+
+} // namespace flotsam

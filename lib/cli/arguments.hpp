@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flotsam::cli {
+
+struct Arguments {
+    enum class Verb { run, check } verb = Verb::run;
+    std::filesystem::path scene;
+    std::filesystem::path out; ///< of run; default out/SCENE
+    std::vector<std::string> overrides;
+    int threads = 0;
+    bool quiet = false;
+};
+
+/// What the command line asks for; or, where it asks for help or is wrong, what to exit with after having said so.
+struct Parsed {
+    std::optional<Arguments> arguments;
+    int exit_code = 0;
+};
+[[nodiscard]] Parsed parse_arguments(int argc, char** argv);
+
+} // namespace flotsam::cli

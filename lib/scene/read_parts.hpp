@@ -1,0 +1,28 @@
+#pragma once
+
+#include "flotsam/scene/scene_file.hpp"
+#include "scene/strict_json.hpp"
+
+namespace flotsam::scene {
+
+/// What the parts of a scene need to know of the whole.
+struct ReadContext {
+    int dimensions = 3;
+    std::filesystem::path folder; ///< relative file names count from here
+};
+
+[[nodiscard]] SceneBody read_body(const JsonNode& node, const ReadContext& context);
+[[nodiscard]] SceneWall read_wall(const JsonNode& node, const ReadContext& context);
+[[nodiscard]] SceneOutput read_output(const JsonNode& node, const ReadContext& context);
+
+/// [x, y, z]; in 2-D also [x, z], and y must be 0.
+[[nodiscard]] Vec3d read_vector(const JsonNode& node, const ReadContext& context, Allowed allowed = {});
+/// "min" and "max" of an object, each coordinate of max above that of min. In 2-D y goes from -1/2 to 1/2 m, so that
+/// volumes are per metre of width.
+[[nodiscard]] Aabb read_box(const JsonObject& object, const ReadContext& context);
+/// "position" and "rotation_deg" of an object, each of which may be missing.
+[[nodiscard]] Pose read_pose(const JsonObject& object, const ReadContext& context);
+/// "file", "scale" and "up" of an object.
+[[nodiscard]] SceneMesh read_mesh(const JsonObject& object, const ReadContext& context);
+
+} // namespace flotsam::scene

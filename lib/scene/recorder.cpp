@@ -1,0 +1,165 @@
+#include "scene/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+namespace flotsam::scene {
+namespace {
+
+std::vector<std::string> history_columns(const SceneFile& scene)
+{
+    std::vector<std::string> columns{"t"};
+    for (const SceneBody& body : scene.bodies)
+        for (const char* suffix :
+             {"x", "y", "z", "rx", "ry", "rz", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz"})
+            columns.push_back(body.name + "." + suffix);
+    for (const SceneProbe& probe : scene.probes) columns.push_back(probe.name);
+    return columns;
+}
+
+void append(std::vector<double>& row, const Vec3d& v)
+{
+    row.insert(row.end(), v.data(), v.data() + 3);
+}
+
+std::string numbered(const char* stem, std::size_t frame, const char* ending)
+{
+    char number[32];
+    std::snprintf(number, sizeof number, "%04zu", frame);
+    return std::string(stem) + number + ending;
+}
+
+/// In 2-D bodies and walls are a metre long in y, which would hide the plane: made as thin as a particle.
+TriangleMesh for_picture(TriangleMesh mesh, const SceneFile& scene)
+{
+    if (scene.dimensions == 2)
+        for (Vec3d& vertex : mesh.vertices) vertex.y() *= scene.particle_spacing;
+    return mesh;
+}
+
+/// Speed that is drawn white: of water that fell through the depth of the fluid. One for all pictures of a run.
+double white_speed(const SceneFile& scene, const FluidState& fluid)
+{
+    double low = 1e300, high = -1e300;
+    for (const Vec4& position : fluid.position) {
+        low = std::min(low, static_cast<double>(position.z()));
+        high = std::max(high, static_cast<double>(position.z()));
+    }
+    return std::sqrt(2.0 * scene.gravity.norm() * std::max(0.0, high - low));
+}
+
+Camera camera_of(const ScenePictures& pictures, const PictureScene& picture, int dimensions)
+{
+    const double aspect = static_cast<double>(pictures.width) / pictures.height;
+    if (!pictures.camera) return default_camera(bounds(picture), aspect, dimensions);
+    Camera camera;
+    camera.position = pictures.camera->position;
+    camera.look_at = pictures.camera->look_at;
+    camera.field_of_view_deg = pictures.camera->fov_deg;
+    const Vec3d view = (camera.look_at - camera.position).normalized();
+    if (std::abs(view.z()) > 0.999) camera.up = Vec3d::UnitY();
+    return camera;
+}
+
+} // namespace
+
+// -- history ------------------------------------------------------------------------------------------------------
+
+History::History(const std::filesystem::path& file, const SceneFile& scene)
+    : writer_(file, history_columns(scene)), impulses_(scene.bodies.size())
+{
+}
+
+void History::add_step(const SceneWorld& world, double dt)
+{
+    for (std::size_t k = 0; k < impulses_.size(); ++k)
+        impulses_[k] += world.fluid().fluid_wrench(static_cast<int>(k)) * dt;
+    seconds_ += dt;
+}
+
+void History::write_row(const SceneFile& scene, const PreparedScene& prepared, const SceneWorld& world)
+{
+    constexpr double kDegrees = 180.0 / std::numbers::pi;
+    std::vector<double> row{world.fluid().time()};
+    for (std::size_t k = 0; k < impulses_.size(); ++k) {
+        const BodyNow now = world.body(k);
+        const Wrench force = seconds_ > 0.0 ? impulses_[k] * (1.0 / seconds_) : Wrench();
+        append(row, now.pose.position);
+        append(row,
+               kDegrees * rotation_vector(now.pose.orientation * prepared.bodies[k].frame.orientation.conjugate()));
+        append(row, now.twist.linear);
+        append(row, now.twist.angular);
+        append(row, force.linear);
+        append(row, force.angular);
+    }
+    for (const SceneProbe& probe : scene.probes)
+        row.push_back(read_probe(world.fluid(), probe).value_or(std::numeric_limits<double>::quiet_NaN()));
+    writer_.row(row);
+    std::fill(impulses_.begin(), impulses_.end(), Wrench());
+    seconds_ = 0.0;
+}
+
+// -- ParaView -----------------------------------------------------------------------------------------------------
+
+VtkFrames::VtkFrames(const std::filesystem::path& directory, const SceneWorld& world)
+    : directory_(directory), particles_(directory / "particles.pvd"), bodies_(directory / "bodies.pvd")
+{
+    std::filesystem::create_directories(directory_ / "vtk");
+    std::vector<PlacedMesh> walls;
+    for (int k = 0; k < world.fluid().wall_count(); ++k) walls.push_back({&world.fluid().wall_mesh(k), Pose()});
+    if (!walls.empty()) write_bodies_vtp(directory_ / "vtk" / "walls.vtp", walls);
+}
+
+void VtkFrames::write(const PreparedScene& prepared, const SceneWorld& world)
+{
+    const double time = world.fluid().time();
+    const std::filesystem::path particles = "vtk/" + numbered("particles_", particles_.size(), ".vtp");
+    write_particles_vtp(directory_ / particles, world.fluid().fluid());
+    particles_.add(time, particles);
+    if (world.body_count() == 0) return;
+    std::vector<PlacedMesh> placed;
+    for (std::size_t k = 0; k < world.body_count(); ++k)
+        placed.push_back({&prepared.bodies[k].mesh, world.body(k).pose});
+    const std::filesystem::path bodies = "vtk/" + numbered("bodies_", bodies_.size(), ".vtp");
+    write_bodies_vtp(directory_ / bodies, placed);
+    bodies_.add(time, bodies);
+}
+
+// -- pictures -----------------------------------------------------------------------------------------------------
+
+Pictures::Pictures(const std::filesystem::path& directory, const SceneFile& scene, const PreparedScene& prepared,
+                   const SceneWorld& world, int threads)
+    : directory_(directory / "pictures"), workers_(threads)
+{
+    std::filesystem::create_directories(directory_);
+    for (int k = 0; k < world.fluid().wall_count(); ++k)
+        walls_.push_back(for_picture(world.fluid().wall_mesh(k), scene));
+    for (const PreparedBody& body : prepared.bodies) bodies_.push_back(for_picture(body.mesh, scene));
+    for (const TriangleMesh& mesh : walls_) picture_.walls.push_back({.placed = {&mesh, Pose()}});
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+        picture_.bodies.push_back({{&bodies_[k], world.body(k).pose}, body_color(k)});
+    picture_.radius = 0.55 * scene.particle_spacing;
+    picture_.particles = world.fluid().fluid().position;
+    picture_.max_speed = white_speed(scene, world.fluid().fluid());
+    picture_.camera = camera_of(*scene.output.pictures, picture_, scene.dimensions);
+    if (scene.dimensions == 3) picture_.ground = bounds(picture_).min.z();
+    const double frames = scene.duration * scene.output.frames_per_second;
+    every_ = scene.output.pictures->every > 0 ? scene.output.pictures->every
+                                              : std::max(1, static_cast<int>(std::ceil(frames / 9.0)));
+}
+
+void Pictures::write(int frame, bool last, const SceneFile& scene, const SceneWorld& world)
+{
+    if (frame % every_ != 0 && !last) return;
+    picture_.particles = world.fluid().fluid().position;
+    picture_.velocities = world.fluid().fluid().velocity;
+    for (std::size_t k = 0; k < picture_.bodies.size(); ++k) picture_.bodies[k].placed.pose = world.body(k).pose;
+    const ScenePictures& size = *scene.output.pictures;
+    write_png(directory_ / numbered("frame_", static_cast<std::size_t>(frame), ".png"),
+              renderer_.render(picture_, size.width, size.height, workers_));
+}
+
+} // namespace flotsam::scene

@@ -1,0 +1,181 @@
+#include "flotsam/scene/run_scene.hpp"
+
+#include "flotsam/core/contracts.hpp"
+#include "flotsam/io/output_error.hpp"
+#include "flotsam/version.hpp"
+#include "scene/recorder.hpp"
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace flotsam {
+namespace scene {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::int64_t peak_memory_bytes()
+{
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Twice the speed of sound in water: nothing that is still a fluid of constant density is so fast.
+constexpr double kFastest = 3000.0; // [m/s]
+
+/// Throws RunFailure for a state that is no longer physics.
+void refuse_broken_state(const StepReport& step, const SceneFile& scene, const SceneWorld& world)
+{
+    const std::string when = " at t = " + std::to_string(world.fluid().time()) + " s";
+    if (!step.fluid_momentum.allFinite() || !(step.max_speed < kFastest))
+        throw RunFailure(scene.file.string() + ": the fluid came apart" + when +
+                         "; a smaller time_step.max or a tighter pressure.tolerance may help");
+    for (std::size_t k = 0; k < world.body_count(); ++k) {
+        const BodyNow now = world.body(k);
+        const bool whole = now.pose.position.allFinite() && now.pose.orientation.coeffs().allFinite() &&
+                           now.twist.linear.norm() < kFastest && now.twist.angular.allFinite();
+        if (!whole)
+            throw RunFailure(scene.file.string() + ": body \"" + scene.bodies[k].name +
+                             "\" was thrown out of the world" + when + "; a smaller time_step.max may help");
+    }
+}
+
+/// Everything that a run writes.
+class Recorder {
+  public:
+    Recorder(const std::filesystem::path& directory, const SceneFile& scene, const PreparedScene& prepared,
+             const SceneWorld& world, int threads)
+        : history_(directory / "history.csv", scene)
+    {
+        if (scene.output.vtk) vtk_.emplace(directory, world);
+        if (scene.output.pictures) pictures_.emplace(directory, scene, prepared, world, threads);
+    }
+    void add_step(const SceneWorld& world, double dt) { history_.add_step(world, dt); }
+    void write_frame(int frame, bool last, const SceneFile& scene, const PreparedScene& prepared,
+                     const SceneWorld& world)
+    {
+        history_.write_row(scene, prepared, world);
+        if (vtk_) vtk_->write(prepared, world);
+        if (pictures_) pictures_->write(frame, last, scene, world);
+    }
+    void close() { history_.close(); }
+
+  private:
+    History history_;
+    std::optional<VtkFrames> vtk_;
+    std::optional<Pictures> pictures_;
+};
+
+/// One run: steps from frame to frame.
+class Run {
+  public:
+    Run(const SceneFile& scene, const PreparedScene& prepared, SceneWorld& world, const RunOptions& options,
+        RunObserver& observer)
+        : scene_(scene), prepared_(prepared), world_(world), options_(options), observer_(observer),
+          tally_(scene, prepared, world)
+    {
+    }
+
+    void record_into(const std::filesystem::path& directory)
+    {
+        recorder_.emplace(directory, scene_, prepared_, world_, options_.threads);
+    }
+
+    void go()
+    {
+        const double frames = scene_.duration * scene_.output.frames_per_second;
+        const int last = std::max(1, static_cast<int>(std::ceil(frames * (1.0 - 1e-9))));
+        write_frame(0, false);
+        for (int frame = 1; frame <= last; ++frame) {
+            step_until(frame == last ? scene_.duration : frame / scene_.output.frames_per_second);
+            write_frame(frame, frame == last);
+        }
+        if (recorder_) recorder_->close();
+    }
+
+    [[nodiscard]] RunReport report(const std::string& failure) const
+    {
+        RunReport report = tally_.report();
+        report.version = kVersion;
+        report.threads = Workers(options_.threads).threads();
+        report.wall_seconds = seconds();
+        report.peak_memory_bytes = peak_memory_bytes();
+        report.notes = prepared_.notes;
+        report.notes.insert(report.notes.end(), world_.fluid().notes().begin(), world_.fluid().notes().end());
+        report.failure = failure;
+        return report;
+    }
+
+  private:
+    [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+    /// What is left up to the frame is cut into equal steps, so that none is left over that is tiny.
+    void step_until(double time)
+    {
+        const double accuracy = 1e-9 * scene_.duration;
+        for (double left = time - world_.fluid().time(); left > accuracy; left = time - world_.fluid().time()) {
+            const double allowed = world_.fluid().allowed_time_step();
+            const StepReport step = world_.step(left / std::ceil(left / allowed * (1.0 - 1e-9)));
+            refuse_broken_state(step, scene_, world_);
+            tally_.add(step);
+            if (recorder_) recorder_->add_step(world_, step.dt);
+            observer_.on_step({world_.fluid().time(), scene_.duration, seconds(), tally_.steps()});
+        }
+    }
+    void write_frame(int frame, bool last)
+    {
+        if (recorder_) recorder_->write_frame(frame, last, scene_, prepared_, world_);
+    }
+
+    const SceneFile& scene_;
+    const PreparedScene& prepared_;
+    SceneWorld& world_;
+    const RunOptions& options_;
+    RunObserver& observer_;
+    RunTally tally_;
+    std::optional<Recorder> recorder_;
+    Clock::time_point start_ = Clock::now();
+};
+
+/// Keeps what was recorded, with a report if one can still be written, and throws on.
+[[noreturn]] void fail(const Run& run, OutputDirectory* out, const std::string& sentence)
+{
+    if (!out) throw RunFailure(sentence);
+    try {
+        write_text_atomically(out->path() / "report.json", report_as_json(run.report(sentence)));
+    } catch (const OutputError&) { // the disk that is full, of which the sentence speaks already
+    }
+    throw RunFailure(sentence + "; what there is stays in " + out->keep_partial().string());
+}
+
+} // namespace
+} // namespace scene
+
+RunReport run_scene(const SceneFile& file, const RunOptions& options, RunObserver& observer)
+{
+    const scene::PreparedScene prepared = scene::prepare_and_check(file);
+    std::optional<OutputDirectory> out;
+    if (!options.out.empty()) out.emplace(options.out);
+    scene::SceneWorld world(file, prepared, options.threads);
+    scene::Run run(file, prepared, world, options, observer);
+    observer.on_start(world.fluid().fluid().size(), world.fluid().boundary().size(), run.report("").notes);
+    try {
+        if (out) run.record_into(out->path());
+        run.go();
+        RunReport report = run.report("");
+        if (out) {
+            write_text_atomically(out->path() / "report.json", report_as_json(report));
+            out->commit();
+        }
+        return report;
+    } catch (const InputError&) { // somebody took the name of the output meanwhile
+        throw;
+    } catch (const std::runtime_error& error) {
+        scene::fail(run, out ? &*out : nullptr, error.what());
+    }
+}
+
+} // namespace flotsam

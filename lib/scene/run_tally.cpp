@@ -1,0 +1,176 @@
+#include "scene/run_tally.hpp"
+
+#include "flotsam/geometry/hydrostatics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flotsam::scene {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+/// A water line is a median of many levels: not one for each step.
+constexpr int kDraftsMeasured = 32;
+
+Vec3d momentum(const FluidState& fluid)
+{
+    Vec3d sum = Vec3d::Zero();
+    for (const Vec4& velocity : fluid.velocity) sum += velocity.head<3>().cast<double>();
+    return fluid.particle_mass * sum;
+}
+
+void add_seconds(StageSeconds& sum, const StageSeconds& step)
+{
+    sum.bodies += step.bodies;
+    sum.neighbours += step.neighbours;
+    sum.density += step.density;
+    sum.forces += step.forces;
+    sum.pressure += step.pressure;
+    sum.advance += step.advance;
+    sum.walls += step.walls;
+}
+
+} // namespace
+
+std::optional<double> read_probe(const FluidWorld& fluid, const SceneProbe& probe)
+{
+    if (probe.kind == SceneProbe::Kind::level) return fluid.level_at(probe.point.x(), probe.point.y());
+    return fluid.pressure_at(probe.point);
+}
+
+RunTally::RunTally(const SceneFile& scene, const PreparedScene& prepared, const SceneWorld& world)
+    : scene_(scene), prepared_(prepared), world_(world),
+      wall_forces_(scene.walls.size(), TimeMean<Vec3d>(Vec3d::Zero())),
+      probes_(scene.probes.size(), TimeMean<double>(0.0)), bodies_(scene.bodies.size())
+{
+    ledger_.fluid_momentum_start = ledger_.fluid_momentum_end = momentum(world.fluid().fluid());
+}
+
+void RunTally::add(const StepReport& step)
+{
+    add_totals(step);
+    if (world_.fluid().time() > 0.75 * scene_.duration) add_last_quarter(step);
+}
+
+void RunTally::add_totals(const StepReport& step)
+{
+    const int iterations = step.iterations + step.shift_iterations;
+    ++steps_;
+    iterations_ += iterations;
+    most_iterations_ = std::max(most_iterations_, iterations);
+    unconverged_ += step.converged ? 0 : 1;
+    leaks_stopped_ += step.leaks_stopped;
+    leaked_ = std::max(leaked_, step.leaked);
+    compression_max_ = std::max(compression_max_, step.compression_max);
+    add_seconds(seconds_, step.seconds);
+    ledger_.gravity_impulse += step.gravity_impulse;
+    ledger_.wall_impulse += step.wall_impulse;
+    ledger_.body_impulse += step.body_impulse;
+    ledger_.guard_impulse += step.guard_impulse;
+    ledger_.fluid_momentum_end = step.fluid_momentum;
+}
+
+void RunTally::add_last_quarter(const StepReport& step)
+{
+    const FluidWorld& fluid = world_.fluid();
+    compression_.add(step.compression_mean, step.dt);
+    for (std::size_t k = 0; k < wall_forces_.size(); ++k)
+        wall_forces_[k].add(fluid.wall_force(static_cast<int>(k)), step.dt);
+    for (std::size_t k = 0; k < probes_.size(); ++k)
+        if (const auto value = read_probe(fluid, scene_.probes[k])) probes_[k].add(*value, step.dt);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        const Wrench wrench = fluid.fluid_wrench(static_cast<int>(k));
+        bodies_[k].force.add(wrench.linear, step.dt);
+        bodies_[k].torque.add(wrench.angular, step.dt);
+    }
+    if (bodies_.empty() || fluid.time() < next_draft_) return;
+    next_draft_ = std::max(next_draft_, 0.75 * scene_.duration) + 0.25 * scene_.duration / kDraftsMeasured;
+    measure_drafts(1.0);
+}
+
+void RunTally::measure_drafts(double dt)
+{
+    const std::vector<BodyState> states = world_.body_states();
+    const std::optional<double> level = world_.fluid().waterline(states);
+    if (!level) return;
+    waterline_.add(*level, dt);
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+        bodies_[k].draft.add(*level - lowest_point(prepared_.bodies[k].mesh, states[k].pose), dt);
+}
+
+RunReport RunTally::report() const
+{
+    RunReport report;
+    report.scene = scene_.file.string();
+    report.particle_spacing = scene_.particle_spacing;
+    report.rest_density = scene_.fluid.density;
+    report.steps = steps_;
+    report.stage_seconds = seconds_;
+    report_fluid(report);
+    report.ledger = report_ledger();
+    for (std::size_t k = 0; k < bodies_.size(); ++k) report.bodies.push_back(report_body(k));
+    for (std::size_t k = 0; k < probes_.size(); ++k)
+        report.probes.push_back(
+            {scene_.probes[k].name, probes_[k].mean(), read_probe(world_.fluid(), scene_.probes[k])});
+    return report;
+}
+
+void RunTally::report_fluid(RunReport& report) const
+{
+    report.simulated_seconds = world_.fluid().time();
+    report.fluid_particles = world_.fluid().fluid().size();
+    report.boundary_samples = world_.fluid().boundary().size();
+    report.state_hash = world_.fluid().state_hash();
+    report.iterations = {steps_ > 0 ? static_cast<double>(iterations_) / static_cast<double>(steps_) : 0.0,
+                         static_cast<double>(most_iterations_)};
+    report.unconverged_steps = unconverged_;
+    report.compression = {compression_.mean().value_or(0.0), compression_max_};
+    report.leaked = leaked_;
+    report.leaks_stopped = leaks_stopped_;
+}
+
+BodyReport RunTally::report_body(std::size_t k) const
+{
+    const PreparedBody& body = prepared_.bodies[k];
+    const BodyNow now = world_.body(k);
+    const Quatd rotation = now.pose.orientation * body.frame.orientation.conjugate();
+    BodyReport report;
+    report.name = scene_.bodies[k].name;
+    report.volume = body.volume;
+    report.position = now.pose.position;
+    report.rotation_deg = rotation_vector(rotation) * kDegrees;
+    report.velocity = now.twist.linear;
+    report.tilt_deg = kDegrees * std::acos(std::clamp((rotation * Vec3d::UnitZ()).z(), -1.0, 1.0));
+    report.waterline = waterline_.mean();
+    report.draft = bodies_[k].draft.mean();
+    report.force_fluid_mean = bodies_[k].force.mean().value_or(Vec3d::Zero());
+    report.torque_fluid_mean = bodies_[k].torque.mean().value_or(Vec3d::Zero());
+    if (!(body.mass > 0.0)) return report;
+    report.mass = body.mass;
+    report.exact_draft = equilibrium_draft(body.mesh, now.pose.orientation, body.mass / scene_.fluid.density);
+    return report;
+}
+
+MomentumLedger RunTally::report_ledger() const
+{
+    MomentumLedger ledger = ledger_;
+    const Vec3d gained = ledger.fluid_momentum_end - ledger.fluid_momentum_start;
+    const Vec3d given = ledger.wall_impulse + ledger.body_impulse;
+    const double error = (gained + given - ledger.gravity_impulse).norm();
+    const double scale = std::max({gained.norm(), ledger.wall_impulse.norm(), ledger.body_impulse.norm(),
+                                   ledger.gravity_impulse.norm(), ledger.fluid_momentum_start.norm()});
+    ledger.momentum_error_relative = scale > 0.0 ? error / scale : 0.0;
+    for (const TimeMean<Vec3d>& force : wall_forces_)
+        ledger.wall_force_mean.push_back(force.mean().value_or(Vec3d::Zero()));
+    return ledger;
+}
+
+Vec3d rotation_vector(const Quatd& rotation)
+{
+    const Eigen::AngleAxisd turn(rotation);
+    const double angle = turn.angle() > std::numbers::pi ? turn.angle() - 2.0 * std::numbers::pi : turn.angle();
+    return angle * turn.axis();
+}
+
+} // namespace flotsam::scene

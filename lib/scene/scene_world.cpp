@@ -1,0 +1,138 @@
+#include "scene/scene_world.hpp"
+
+#include "flotsam/core/contracts.hpp"
+
+#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+
+namespace flotsam::scene {
+namespace {
+
+FluidWorldSettings fluid_settings(const SceneFile& scene, int threads)
+{
+    FluidWorldSettings settings;
+    settings.dimensions = scene.dimensions;
+    settings.particle_spacing = scene.particle_spacing;
+    settings.gravity = scene.gravity;
+    settings.rest_density = scene.fluid.density;
+    settings.kinematic_viscosity = scene.fluid.kinematic_viscosity;
+    settings.pressure = scene.pressure;
+    settings.max_time_step = scene.max_time_step;
+    settings.cfl = scene.cfl;
+    settings.threads = threads;
+    return settings;
+}
+
+/// Locked axes, and those out of the plane in 2-D.
+void lock_axes(const SceneBody& body, int dimensions, btRigidBody& made)
+{
+    Vec3d linear = Vec3d::Ones(), angular = Vec3d::Ones();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (body.lock[static_cast<std::size_t>(axis)]) linear[axis] = 0.0;
+        if (body.lock[static_cast<std::size_t>(axis + 3)]) angular[axis] = 0.0;
+    }
+    if (dimensions == 2) {
+        linear.y() = 0.0;
+        angular.x() = angular.z() = 0.0;
+    }
+    made.setLinearFactor(to_bullet(linear));
+    made.setAngularFactor(to_bullet(angular));
+}
+
+std::unique_ptr<btRigidBody> rigid_body(double mass, const Vec3d& inertia, const Pose& pose, double friction,
+                                        btCollisionShape* shape)
+{
+    btRigidBody::btRigidBodyConstructionInfo info(static_cast<btScalar>(mass), nullptr, shape, to_bullet(inertia));
+    info.m_startWorldTransform = to_bullet(pose);
+    info.m_friction = static_cast<btScalar>(friction);
+    return std::make_unique<btRigidBody>(info);
+}
+
+std::unique_ptr<btRigidBody> body_of(const SceneFile& scene, const SceneBody& body, const PreparedBody& prepared,
+                                     BulletShapes& shapes)
+{
+    using Motion = SceneBody::Motion;
+    const bool dynamic = body.motion == Motion::dynamic;
+    auto made = rigid_body(dynamic ? prepared.mass : 0.0, dynamic ? prepared.inertia : Vec3d(Vec3d::Zero()),
+                           prepared.start, body.friction, add_body_shape(prepared, dynamic, shapes));
+    if (body.motion == Motion::moving)
+        made->setCollisionFlags(made->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    if (body.motion == Motion::fixed) return made;
+    lock_axes(body, scene.dimensions, *made);
+    made->setLinearVelocity(to_bullet(body.velocity));
+    made->setAngularVelocity(to_bullet(body.angular_velocity));
+    made->setActivationState(DISABLE_DEACTIVATION); // a floating body never rests for good
+    return made;
+}
+
+} // namespace
+
+SceneWorld::SceneWorld(const SceneFile& scene, const PreparedScene& prepared, int threads)
+    : fluid_(fluid_settings(scene, threads)), dispatcher_(&configuration_),
+      world_(&dispatcher_, &broadphase_, &solver_, &configuration_),
+      coupling_(std::make_unique<BulletCoupling>(fluid_, world_))
+{
+    btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
+    world_.setGravity(to_bullet(scene.gravity));
+    add_fluid(prepared);
+    for (std::size_t k = 0; k < scene.fluid.meshes.size(); ++k)
+        fluid_.add_fluid_mesh(prepared.fluid_meshes[k], scene.fluid.meshes[k].velocity);
+    add_walls(scene, prepared);
+    add_bodies(scene, prepared);
+    fluid_.prepare(coupling_->bodies());
+    if (fluid_.fluid().size() == 0)
+        throw InputError(scene.file.string() + ": no fluid is left within the walls and outside the bodies");
+}
+
+SceneWorld::~SceneWorld()
+{
+    coupling_.reset();
+    for (const auto& body : bodies_) world_.removeRigidBody(body.get());
+    for (const auto& wall : walls_) world_.removeRigidBody(wall.get());
+}
+
+void SceneWorld::add_fluid(const PreparedScene& prepared)
+{
+    for (const SceneBlock& block : prepared.blocks) fluid_.add_block(block.box, block.velocity);
+}
+
+void SceneWorld::add_walls(const SceneFile& scene, const PreparedScene& prepared)
+{
+    for (std::size_t k = 0; k < scene.walls.size(); ++k) {
+        const SceneWall& wall = scene.walls[k];
+        if (wall.mesh)
+            fluid_.add_wall(prepared.walls[k].mesh, wall.side);
+        else
+            fluid_.add_box_wall(wall.box, wall.open);
+        // Bullet multiplies frictions: 1 leaves a body's own against walls
+        walls_.push_back(rigid_body(0.0, Vec3d::Zero(), Pose(), 1.0, add_wall_shape(wall, prepared.walls[k], shapes_)));
+        world_.addRigidBody(walls_.back().get());
+    }
+}
+
+void SceneWorld::add_bodies(const SceneFile& scene, const PreparedScene& prepared)
+{
+    for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+        bodies_.push_back(body_of(scene, scene.bodies[k], prepared.bodies[k], shapes_));
+        world_.addRigidBody(bodies_.back().get());
+        coupling_->add(*bodies_.back(), prepared.bodies[k].mesh);
+    }
+}
+
+BodyNow SceneWorld::body(std::size_t k) const
+{
+    const btRigidBody& body = *bodies_[k];
+    return {from_bullet(body.getWorldTransform()),
+            {from_bullet(body.getLinearVelocity()), from_bullet(body.getAngularVelocity())}};
+}
+
+std::vector<BodyState> SceneWorld::body_states() const
+{
+    std::vector<BodyState> states;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        const BodyNow now = body(k);
+        states.push_back({now.pose, now.twist, !bodies_[k]->isStaticOrKinematicObject()});
+    }
+    return states;
+}
+
+} // namespace flotsam::scene

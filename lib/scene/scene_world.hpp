@@ -1,0 +1,50 @@
+#pragma once
+
+#include "flotsam/bullet/bullet_coupling.hpp"
+#include "scene/bullet_shapes.hpp"
+#include "scene/prepared_scene.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace flotsam::scene {
+
+/// Where a body of the scene is now.
+struct BodyNow {
+    Pose pose; ///< of the body's frame
+    Twist twist;
+};
+
+/// The fluid and the Bullet world of a scene, coupled.
+class SceneWorld {
+  public:
+    SceneWorld(const SceneFile& scene, const PreparedScene& prepared, int threads);
+    ~SceneWorld();
+    SceneWorld(const SceneWorld&) = delete;
+    SceneWorld& operator=(const SceneWorld&) = delete;
+
+    [[nodiscard]] const FluidWorld& fluid() const { return fluid_; }
+    [[nodiscard]] std::size_t body_count() const { return bodies_.size(); }
+    [[nodiscard]] BodyNow body(std::size_t k) const;
+    /// Of all bodies, as FluidWorld::waterline wants them.
+    [[nodiscard]] std::vector<BodyState> body_states() const;
+
+    StepReport step(double dt) { return coupling_->step(dt); }
+
+  private:
+    void add_fluid(const PreparedScene& prepared);
+    void add_walls(const SceneFile& scene, const PreparedScene& prepared);
+    void add_bodies(const SceneFile& scene, const PreparedScene& prepared);
+
+    FluidWorld fluid_;
+    BulletShapes shapes_;
+    btDefaultCollisionConfiguration configuration_;
+    btCollisionDispatcher dispatcher_;
+    btDbvtBroadphase broadphase_;
+    btSequentialImpulseConstraintSolver solver_;
+    btDiscreteDynamicsWorld world_;
+    std::vector<std::unique_ptr<btRigidBody>> walls_, bodies_;
+    std::unique_ptr<BulletCoupling> coupling_;
+};
+
+} // namespace flotsam::scene
