@@ -7,7 +7,6 @@
 #include "flotsam/sph/neighbourhood.hpp"
 #include "flotsam/world/fluid_world.hpp"
 #include "sph/contacts.hpp"
-#include "sph/forces/dissipation.hpp"
 #include "sph/forces/viscosity.hpp"
 #include "sph/pressure/complementarity_solver.hpp"
 #include "sph/pressure/pressure_system.hpp"
@@ -86,7 +85,6 @@ struct FluidWorld::Impl {
     ContactBuilder contact_builder;
     Contacts contacts;
     Viscosity viscosity;
-    Dissipation dissipation;
     RelaxedJacobi relaxed_jacobi;
     Mprgp mprgp;
     PressureOperator pressure_operator;

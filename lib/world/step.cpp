@@ -150,12 +150,10 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
     workers.for_each(fluid.size(), [&](std::size_t i) { predicted[i] = fluid.velocity[i] + gravity_step; });
     report.gravity_impulse = settings.gravity * (dt * fluid.particle_mass * static_cast<double>(fluid.size()));
     total.assign(owners(), Wrench{});
-    if (settings.kinematic_viscosity > 0.0) {
-        viscosity.add(settings.kinematic_viscosity, dt, settings.dimensions, support(), fluid, boundary, fluid_pairs,
-                      boundary_pairs, centers, workers, predicted, total);
-    }
-    if (settings.dissipation > 0.0) {
-        dissipation.add(settings.dissipation, dt, settings.dimensions, spacing(), fluid, fluid_pairs, workers, predicted);
+    if (settings.kinematic_viscosity > 0.0 || settings.dissipation > 0.0) {
+        const ViscositySettings viscous{settings.kinematic_viscosity, settings.dissipation, spacing(),
+                                        settings.rest_density, settings.dimensions};
+        viscosity.add(viscous, dt, fluid, boundary, fluid_pairs, boundary_pairs, centers, workers, predicted, total);
     }
     answer.resize(owners());
     respond(port, total, answer);

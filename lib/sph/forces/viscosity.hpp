@@ -4,31 +4,57 @@
 #include "flotsam/sph/fluid_state.hpp"
 #include "flotsam/sph/neighbourhood.hpp"
 
+#include <array>
 #include <span>
 #include <vector>
 
 namespace flotsam {
 
-/// Physical viscosity between particles, and between particles and boundary samples:
+struct ViscositySettings {
+    double kinematic_viscosity = 0.0; ///< nu [m^2/s]
+    double dissipation = 0.0;         ///< strength of the sub-resolution part [-]
+    double spacing = 0.0;             ///< d [m]
+    double rest_density = 1000.0;     ///< [kg/m^3]
+    int dimensions = 3;
+};
+
+/// Physical viscosity, and dissipation of what the particles cannot resolve.
 ///
-///     a_i = 2 (dim + 2) nu sum_j (m_j / rho_j) (v_ij . x_ij) / (|x_ij|^2 + 0.01 h^2) grad W_ij
+///     a_i = 2 (dim + 2) V sum_j (nu s_ij + nu_ij q_ij) / (|x_ij|^2 + 0.01 h^2) grad W_ij,   s_ij = v_ij . x_ij,   V = m / rho0
+///     nu_ij = dissipation d |q_ij| / |x_ij|
+///     q_ij = (v_ij - (G_i + G_j) x_ij / 2) . x_ij, limited to lie between 0 and s_ij;   G_i the velocity gradient at i
 ///
-/// Forces lie along x_ij, so linear and angular momentum are kept; a sample counts as m = rho0 V_b, rho = rho0, and
-/// takes the reaction. **Source:** Monaghan 2005; in this form Koschier et al. 2019, eq. 23.
+/// The second part acts on velocity differences between neighbours that are not part of a locally linear field: a particle
+/// fluid without it keeps the noise of its own rearrangement for ever. It is quadratic in the difference, so it has no
+/// speed of its own and vanishes with the noise, and it is zero for any linear flow (shear, rotation, strain). Between fluid
+/// particles only. A boundary sample counts as volume V_b in the first part and takes the reaction.
+/// All forces lie along x_ij: linear and angular momentum are kept and energy never rises.
+/// **Source:** Monaghan 2005, in the form of Koschier et al. 2019, eq. 23, for nu; von Neumann & Richtmyer 1950 for the
+/// quadratic form; Frontiere, Raskin & Owen 2017 for taking the linear field away. **Differs:** G is renormalised
+/// (Randles & Libersky 1996); the limiter is the interval above.
 class Viscosity {
   public:
-    /// Adds dt a_i to `velocity` (a copy of the state's velocities is read, so the order of particles does not matter)
-    /// and the reaction impulses to `owner_impulses` (about `centers`) [N s].
-    void add(double kinematic_viscosity, double dt, int dimensions, double support, const FluidState& fluid,
-             const BoundaryState& boundary, const Pairs& fluid_pairs, const Pairs& boundary_pairs,
-             std::span<const Vec3d> centers, const Workers& workers, std::span<Vec4> velocity,
-             std::span<Wrench> owner_impulses);
+    /// Adds dt a_i to `velocity` (which is not read: the state's velocities are) and the reaction impulses about
+    /// `centers` to `owner_impulses` [N s], [N m s].
+    void add(const ViscositySettings& settings, double dt, const FluidState& fluid, const BoundaryState& boundary,
+             const Pairs& fluid_pairs, const Pairs& boundary_pairs, std::span<const Vec3d> centers,
+             const Workers& workers, std::span<Vec4> velocity, std::span<Wrench> owner_impulses);
 
   private:
+    using Columns = std::array<Vec4, 3>; ///< of a 3 x 3 matrix, w = 0
     struct Reaction {
         std::int32_t owner;
         Wrench impulse;
     };
+    void find_gradients(const ViscositySettings& settings, const FluidState& fluid, const Pairs& pairs,
+                        const Workers& workers);
+    void add_between_particles(const ViscositySettings& settings, double dt, const FluidState& fluid,
+                               const Pairs& pairs, const Workers& workers, std::span<Vec4> velocity) const;
+    void add_at_boundaries(const ViscositySettings& settings, double dt, const FluidState& fluid,
+                           const BoundaryState& boundary, const Pairs& pairs, std::span<const Vec3d> centers,
+                           const Workers& workers, std::span<Vec4> velocity, std::span<Wrench> owner_impulses);
+
+    std::vector<Columns> gradient_;                ///< half the velocity gradient of each particle [1/s]
     std::vector<std::vector<Reaction>> reactions_; ///< per chunk
 };
 
