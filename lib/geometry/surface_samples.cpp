@@ -8,13 +8,15 @@
 #include "geometry/sample_candidates.hpp"
 #include "geometry/sample_rods.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace flotsam {
 namespace {
 
-constexpr double kCandidates = 10.0; ///< per sample
+constexpr double kManyCandidates = 20.0, kFewCandidates = 6.0; ///< per sample, of small and of large surfaces
+constexpr double kAllCandidates = 40000.0;                     ///< between them, altogether
 constexpr double kHexagonal =
     1.0746; ///< distance of neighbours in a hexagonal lattice of unit area each, sqrt(2/sqrt 3)
 // The push has the reach of the kernel and some of the last step's drift: that evens out the density of samples as
@@ -40,6 +42,14 @@ double covered_area(const SampleCandidates& candidates, double spacing)
         });
         area += candidates.area_each * same / (same + opposite);
     }
+    return area;
+}
+
+double mesh_area(const TriangleMesh& mesh)
+{
+    double area = 0.0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        area += 0.5 * (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0)).norm();
     return area;
 }
 
@@ -114,7 +124,9 @@ bool fill_holes(std::vector<OffsetPoint>& samples, const SampleCandidates& candi
 std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const SurfaceSampleSettings& settings)
 {
     const double d = settings.spacing;
-    const SampleCandidates candidates = sample_candidates(offset, kCandidates / (d * d), settings.seed);
+    const double rough_count = mesh_area(offset.surface().mesh()) / (d * d);
+    const double each = std::clamp(kAllCandidates / rough_count, kFewCandidates, kManyCandidates);
+    const SampleCandidates candidates = sample_candidates(offset, each / (d * d), settings.seed);
     std::vector<OffsetPoint> samples = sample_creases(offset, d);
     const std::size_t fixed = samples.size();
     if (!candidates.points.empty()) {
