@@ -93,6 +93,8 @@ std::optional<OffsetPoint> OffsetSurface::project(const Vec3d& position, const O
     auto nearest = surface_.closest(position);
     if (inset_ == 0.0)
         return OffsetPoint{nearest.point, inward(static_cast<std::size_t>(nearest.triangle)), 0.0, false};
+    // Of a thin part one can fall out, and find the right distance again outside.
+    const auto reachable = [&](const Vec3d& there) { return !surface_.sweep(from.position, there); };
     const Vec3d first_base = nearest.point, first_direction = direction_at(position, nearest);
     if (!from.thin) {
         Vec3d direction = first_direction;
@@ -100,11 +102,15 @@ std::optional<OffsetPoint> OffsetSurface::project(const Vec3d& position, const O
             if (direction.dot(from.direction) <= -0.5) return std::nullopt;
             const Vec3d moved = nearest.point + inset_ * direction;
             nearest = surface_.closest(moved);
-            if (nearest.distance >= (1.0 - kLoose) * inset_) return OffsetPoint{moved, direction, inset_, false};
+            if (nearest.distance >= (1.0 - kLoose) * inset_) {
+                if (!reachable(moved)) return std::nullopt;
+                return OffsetPoint{moved, direction, inset_, false};
+            }
             direction = direction_at(moved, nearest);
         }
     }
-    return below(first_base, first_direction);
+    const auto point = below(first_base, first_direction);
+    return point && reachable(point->position) ? point : std::nullopt;
 }
 
 OffsetPoint OffsetSurface::deepest_below(const Vec3d& base, const Vec3d& direction) const
