@@ -26,7 +26,7 @@ TEST_CASE("a box is filled with exactly its volume", "[geometry][volume_samples]
 {
     const double d = 0.05;
     const Vec3d size = GENERATE(Vec3d(0.5, 0.4, 0.3), Vec3d(0.53, 0.47, 0.333), Vec3d(0.98, 0.11, 0.21),
-                                Vec3d(0.4, 0.04, 0.4), Vec3d(0.6, 0.6, 0.02));
+                                Vec3d(0.4, 0.04, 0.4), Vec3d(0.6, 0.6, 0.02), Vec3d(0.6, 0.6, 0.01));
     const Aabb box{Vec3d(-0.3, 2.0, 1.0), Vec3d(-0.3, 2.0, 1.0) + size};
     SECTION("3-D")
     {
