@@ -102,7 +102,7 @@ std::optional<OffsetPoint> OffsetSurface::project(const Vec3d& position, const O
             if (direction.dot(from.direction) <= -0.5) return std::nullopt;
             const Vec3d moved = nearest.point + inset_ * direction;
             nearest = surface_.closest(moved);
-            if (nearest.distance >= (1.0 - kLoose) * inset_) {
+            if (std::abs(nearest.distance - inset_) <= kLoose * inset_) {
                 if (!reachable(moved)) return std::nullopt;
                 return OffsetPoint{moved, direction, inset_, false};
             }

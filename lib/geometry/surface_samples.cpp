@@ -151,6 +151,14 @@ std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const Surface
     return samples;
 }
 
+/// Fins without thickness have their solid on the wrong side of both faces.
+void drop_wrong_side(std::vector<OffsetPoint>& samples, const SurfaceQuery& surface, bool inside)
+{
+    const MeshTopology mesh = topology(surface.mesh());
+    if (std::find(mesh.on_boundary.begin(), mesh.on_boundary.end(), true) != mesh.on_boundary.end()) return;
+    std::erase_if(samples, [&](const OffsetPoint& sample) { return surface.inside(sample.position) != inside; });
+}
+
 } // namespace
 
 SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
@@ -159,8 +167,10 @@ SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSe
     require(settings.inset >= 0.0, "inset of samples must be >= 0 [m]", settings.inset);
     require(settings.dimensions == 2 || settings.dimensions == 3, "dimensions must be 2 or 3", settings.dimensions);
 
-    const std::vector<OffsetPoint> points =
+    std::vector<OffsetPoint> points =
         settings.dimensions == 2 ? sample_outline(surface, settings) : sample_layer({surface, settings}, settings);
+    if (settings.inset > 0.0 && settings.solid != SurfaceSampleSettings::Solid::both)
+        drop_wrong_side(points, surface, settings.solid == SurfaceSampleSettings::Solid::inside);
     SurfaceSamples samples;
     std::size_t thin = 0;
     for (const OffsetPoint& point : points) {

@@ -227,6 +227,30 @@ TEST_CASE("a wedge is sampled out to its edge", "[geometry][surface_samples]")
     CHECK(farthest > 18.5 * d);
 }
 
+TEST_CASE("a fin without thickness gets no samples outside", "[geometry][surface_samples]")
+{
+    TriangleMesh mesh = centred_box(8.0, 8.0, 4.0);
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (const Vec3d& p : {Vec3d(6, 0, 0), Vec3d(9, 0, 0), Vec3d(9, 0, 3)}) mesh.vertices.push_back(d * p);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 1});
+    const SurfaceQuery query(mesh);
+    const SurfaceSamples samples = sample_surface(query, at_half_spacing(Solid::inside));
+    REQUIRE(samples.positions.size() > 100);
+    for (const Vec3d& p : samples.positions) CHECK(query.signed_distance(p) < -0.49 * d);
+}
+
+TEST_CASE("far from the origin samples are as good", "[geometry][surface_samples]")
+{
+    TriangleMesh mesh = centred_box(8.0, 6.0, 5.0);
+    for (Vec3d& v : mesh.vertices) v += Vec3d(1000.0, -2000.0, 500.0);
+    const SurfaceQuery query(mesh);
+    const SurfaceSampleSettings settings = at_half_spacing(Solid::inside);
+    const SurfaceSamples samples = sample_surface(query, settings);
+    REQUIRE(samples.positions.size() > 100);
+    check_even(query, samples, settings);
+}
+
 TEST_CASE("the same input gives the same samples, another seed others", "[geometry][surface_samples]")
 {
     const SurfaceQuery query(centred_box(6.0, 5.0, 4.0));
