@@ -101,24 +101,38 @@ void drop_crowded(std::vector<OffsetPoint>& samples, double closest)
     samples = std::move(kept);
 }
 
-/// Candidates farther than `hole` from every sample become samples, farthest first.
+/// Candidates farther than `hole` from every sample become samples. Were there any?
 bool fill_holes(std::vector<OffsetPoint>& samples, const SampleCandidates& candidates, double hole)
 {
     const PointGrid grid(positions_of(samples), hole);
-    std::vector<OffsetPoint> lonely;
-    for (const OffsetPoint& point : candidates.points)
-        if (grid.nearest(point.position, hole) >= hole) lonely.push_back(point);
-    for (std::size_t i = 0; i < lonely.size(); ++i) {
-        bool free = true;
-        for (std::size_t k = 0; k < i && free; ++k)
-            free = (lonely[k].position - lonely[i].position).norm() > hole || lonely[k].depth < 0.0;
-        if (free) {
-            samples.push_back(lonely[i]);
-        } else {
-            lonely[i].depth = -1.0; // not taken: does not stand in the way of later ones
-        }
+    const auto before = static_cast<std::ptrdiff_t>(samples.size());
+    for (const OffsetPoint& point : candidates.points) {
+        const auto near = [&](const OffsetPoint& added) { return (added.position - point.position).norm() < hole; };
+        if (grid.nearest(point.position, hole) < hole) continue;
+        if (std::none_of(samples.begin() + before, samples.end(), near)) samples.push_back(point);
     }
-    return !lonely.empty();
+    return static_cast<std::ptrdiff_t>(samples.size()) > before;
+}
+
+/// `samples` come as those that stay where they are; the rest is chosen from the candidates and evened out.
+void choose_samples(std::vector<OffsetPoint>& samples, const SampleCandidates& candidates, std::size_t count,
+                    const OffsetSurface& offset, double spacing)
+{
+    const std::size_t fixed = samples.size();
+    samples.insert(samples.end(), candidates.points.begin(), candidates.points.end());
+    std::vector<OffsetPoint> chosen;
+    for (std::size_t i : eliminate_crowded(positions_of(samples), fixed, count, kHexagonal * spacing))
+        chosen.push_back(samples[i]);
+    samples = std::move(chosen);
+    std::vector<Vec3d> drift;
+    for (int step = 0; step < kSteps; ++step) repel(samples, drift, fixed, offset, spacing);
+    for (int round = 0; round < 3; ++round) {
+        drop_crowded(samples, kClosest * spacing);
+        if (!fill_holes(samples, candidates, kHole * spacing)) return;
+        drift.clear();
+        for (int step = 0; step < 5; ++step) repel(samples, drift, fixed, offset, spacing);
+    }
+    drop_crowded(samples, kClosest * spacing);
 }
 
 std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const SurfaceSampleSettings& settings)
@@ -128,24 +142,11 @@ std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const Surface
     const double each = std::clamp(kAllCandidates / rough_count, kFewCandidates, kManyCandidates);
     const SampleCandidates candidates = sample_candidates(offset, each / (d * d), settings.seed);
     std::vector<OffsetPoint> samples = sample_creases(offset, d);
-    const std::size_t fixed = samples.size();
     if (!candidates.points.empty()) {
+        // Samples on a rim have half of their surroundings off the surface.
         const double area = covered_area(candidates, d) + 0.5 * d * rim_length(offset);
         const auto count = static_cast<std::size_t>(std::max(1.0, std::round(area / (d * d))));
-        samples.insert(samples.end(), candidates.points.begin(), candidates.points.end());
-        std::vector<OffsetPoint> chosen;
-        for (std::size_t i : eliminate_crowded(positions_of(samples), fixed, count, kHexagonal * d))
-            chosen.push_back(samples[i]);
-        samples = std::move(chosen);
-        std::vector<Vec3d> drift;
-        for (int step = 0; step < kSteps; ++step) repel(samples, drift, fixed, offset, d);
-        for (int round = 0; round < 3; ++round) {
-            drop_crowded(samples, kClosest * d);
-            if (!fill_holes(samples, candidates, kHole * d)) break;
-            drift.clear();
-            for (int step = 0; step < 5; ++step) repel(samples, drift, fixed, offset, d);
-        }
-        drop_crowded(samples, kClosest * d);
+        choose_samples(samples, candidates, count, offset, d);
     }
     sample_rods(samples, candidates.bare, offset, d);
     return samples;
