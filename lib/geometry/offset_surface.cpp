@@ -83,7 +83,7 @@ bool OffsetSurface::at_rim(const SurfaceQuery::Closest& nearest) const
 
 Vec3d OffsetSurface::direction_at(const Vec3d& position, const SurfaceQuery::Closest& nearest) const
 {
-    const Vec3d inward_here = inward(static_cast<std::size_t>(nearest.triangle));
+    Vec3d inward_here = inward(static_cast<std::size_t>(nearest.triangle));
     if (nearest.distance < 1e-6 * inset_ || at_rim(nearest)) return inward_here;
     return (position - nearest.point) / nearest.distance;
 }

@@ -24,8 +24,8 @@ TriangleMesh ribbon(const std::vector<CutLine>& lines, double half)
     for (const CutLine& line : lines) {
         const int first = static_cast<int>(mesh.vertices.size()), count = static_cast<int>(line.points.size());
         for (const Vec2d& p : line.points) {
-            mesh.vertices.push_back(in_space(p) - across);
-            mesh.vertices.push_back(in_space(p) + across);
+            mesh.vertices.emplace_back(in_space(p) - across);
+            mesh.vertices.emplace_back(in_space(p) + across);
         }
         for (int k = 0; k < count - (line.closed ? 0 : 1); ++k) {
             const int p = first + 2 * k, q = first + 2 * ((k + 1) % count);
