@@ -34,7 +34,7 @@ TriangleMesh soup(int triangles, Random& random)
     TriangleMesh mesh;
     for (int t = 0; t < triangles; ++t) {
         const Vec3d middle = random.in_box(1.0);
-        for (int k = 0; k < 3; ++k) mesh.vertices.push_back(middle + random.in_box(0.4));
+        for (int k = 0; k < 3; ++k) mesh.vertices.emplace_back(middle + random.in_box(0.4));
         mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
     }
     return mesh;
@@ -283,6 +283,7 @@ TEST_CASE("queries from several threads agree", "[geometry][surface_query]")
     };
     std::vector<double> totals(3, 0.0);
     std::vector<std::thread> threads;
+    threads.reserve(totals.size());
     for (double& total : totals) threads.emplace_back([&total, &sum] { total = sum(); });
     for (std::thread& thread : threads) thread.join();
     for (double total : totals) CHECK(total == sum());
