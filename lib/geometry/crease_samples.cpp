@@ -124,10 +124,7 @@ class CreaseWalk {
     }
     void add_exact(const OffsetPoint& point, bool is_corner)
     {
-        const double inset = offset_.inset();
-        const double distance = offset_.surface().closest(point.position).distance;
-        const bool far = distance > (1.0 + OffsetSurface::kTolerance) * inset + 1e-9 * step_;
-        if (distance >= (1.0 - OffsetSurface::kTolerance) * inset && !far) {
+        if (offset_.holds(point.position)) {
             line_.add(point, is_corner);
         } else if (is_corner) {
             line_.corner_missed();

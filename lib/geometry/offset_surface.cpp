@@ -6,7 +6,9 @@
 namespace flotsam {
 namespace {
 
-constexpr int kShrinkSteps = 16;
+constexpr double kTight = 1e-6; ///< of the depth: candidates that lie shallower overlap the next facet's
+constexpr double kLoose = 1e-3; ///< of the inset, by which a moved point may lie too shallow
+constexpr int kShrinkSteps = 24;
 constexpr double kShallowest = 0.05; ///< of the inset: the last bit of a wedge's tip goes without samples
 constexpr double kOpposite = -0.5;   ///< cosine below which the two nearest walls make a part thin, not a wedge
 
@@ -21,7 +23,8 @@ Vec3d unit_normal(const TriangleMesh& mesh, std::size_t t)
 
 OffsetSurface::OffsetSurface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
     : surface_(surface), topology_(flotsam::topology(surface.mesh())), inset_(settings.inset),
-      side_(settings.solid == SurfaceSampleSettings::Solid::inside ? -1.0 : 1.0)
+      side_(settings.solid == SurfaceSampleSettings::Solid::inside ? -1.0 : 1.0),
+      inside_(settings.solid == SurfaceSampleSettings::Solid::inside)
 {
     if (settings.solid == SurfaceSampleSettings::Solid::both) inset_ = 0.0;
     for (std::size_t t = 0; t < surface.mesh().triangles.size(); ++t) {
@@ -38,7 +41,7 @@ std::optional<OffsetPoint> OffsetSurface::below(const Vec3d& base, const Vec3d& 
     Vec3d other = base;
     for (int step = 0; step < kShrinkSteps; ++step) {
         const auto nearest = surface_.closest(point.position);
-        if (nearest.distance >= (1.0 - kTolerance) * point.depth) {
+        if (nearest.distance >= (1.0 - kTight) * point.depth) {
             if (!point.thin) return point;
             const Vec3d to_other = (other - point.position).normalized();
             if (to_other.dot(-direction) < kOpposite) return point;
@@ -53,6 +56,16 @@ std::optional<OffsetPoint> OffsetSurface::below(const Vec3d& base, const Vec3d& 
         point.thin = true;
     }
     return std::nullopt;
+}
+
+bool OffsetSurface::holds(const Vec3d& position) const
+{
+    const auto nearest = surface_.closest(position);
+    const double slack = kTight * inset_ + 1e-12 * position.cwiseAbs().maxCoeff();
+    if (std::abs(nearest.distance - inset_) > slack) return false;
+    if (inset_ == 0.0) return true;
+    if (has_rim_) return (position - nearest.point).dot(inward(static_cast<std::size_t>(nearest.triangle))) > 0.0;
+    return surface_.inside(position) == inside_;
 }
 
 bool OffsetSurface::at_rim(const SurfaceQuery::Closest& nearest) const
@@ -70,7 +83,7 @@ bool OffsetSurface::at_rim(const SurfaceQuery::Closest& nearest) const
 
 Vec3d OffsetSurface::direction_at(const Vec3d& position, const SurfaceQuery::Closest& nearest) const
 {
-    const Vec3d inward_here = inward(static_cast<std::size_t>(nearest.triangle));
+    Vec3d inward_here = inward(static_cast<std::size_t>(nearest.triangle));
     if (nearest.distance < 1e-6 * inset_ || at_rim(nearest)) return inward_here;
     return (position - nearest.point) / nearest.distance;
 }
@@ -80,6 +93,8 @@ std::optional<OffsetPoint> OffsetSurface::project(const Vec3d& position, const O
     auto nearest = surface_.closest(position);
     if (inset_ == 0.0)
         return OffsetPoint{nearest.point, inward(static_cast<std::size_t>(nearest.triangle)), 0.0, false};
+    // Of a thin part one can fall out, and find the right distance again outside.
+    const auto reachable = [&](const Vec3d& there) { return !surface_.sweep(from.position, there); };
     const Vec3d first_base = nearest.point, first_direction = direction_at(position, nearest);
     if (!from.thin) {
         Vec3d direction = first_direction;
@@ -87,11 +102,15 @@ std::optional<OffsetPoint> OffsetSurface::project(const Vec3d& position, const O
             if (direction.dot(from.direction) <= -0.5) return std::nullopt;
             const Vec3d moved = nearest.point + inset_ * direction;
             nearest = surface_.closest(moved);
-            if (nearest.distance >= (1.0 - kTolerance) * inset_) return OffsetPoint{moved, direction, inset_, false};
+            if (std::abs(nearest.distance - inset_) <= kLoose * inset_) {
+                if (!reachable(moved)) return std::nullopt;
+                return OffsetPoint{moved, direction, inset_, false};
+            }
             direction = direction_at(moved, nearest);
         }
     }
-    return below(first_base, first_direction);
+    const auto point = below(first_base, first_direction);
+    return point && reachable(point->position) ? point : std::nullopt;
 }
 
 OffsetPoint OffsetSurface::deepest_below(const Vec3d& base, const Vec3d& direction) const
@@ -115,7 +134,7 @@ OffsetPoint OffsetSurface::deepest_below(const Vec3d& base, const Vec3d& directi
         step *= better ? 1.2 : 0.6;
     }
     const auto nearest = surface_.closest(position);
-    return {position, direction_at(position, nearest), std::min(depth, inset_), depth < (1.0 - kTolerance) * inset_};
+    return {position, direction_at(position, nearest), std::min(depth, inset_), depth < (1.0 - kLoose) * inset_};
 }
 
 } // namespace flotsam

@@ -19,8 +19,6 @@ struct OffsetPoint {
 /// middle of parts thinner than two insets. It ends where the sheet that bears it ends: no arcs beyond a rim.
 class OffsetSurface {
   public:
-    static constexpr double kTolerance = 1e-3; ///< of the inset, by which a point may lie too shallow
-
     OffsetSurface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings);
 
     /// The point straight below `base`, if the surface reaches there.
@@ -31,6 +29,9 @@ class OffsetSurface {
 
     /// The deepest point (at most `inset` deep) uphill from below `base`: for parts thin in two directions and more.
     [[nodiscard]] OffsetPoint deepest_below(const Vec3d& base, const Vec3d& direction) const;
+
+    /// Does the point lie exactly `inset` deep in the solid?
+    [[nodiscard]] bool holds(const Vec3d& position) const;
 
     /// Unit direction into the solid at a triangle.
     [[nodiscard]] Vec3d inward(std::size_t triangle) const { return side_ * normals_[triangle]; }
@@ -48,6 +49,7 @@ class OffsetSurface {
     std::vector<Vec3d> normals_;
     double inset_;
     double side_;
+    bool inside_;
     bool has_rim_ = false;
 };
 

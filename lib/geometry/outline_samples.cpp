@@ -24,8 +24,8 @@ TriangleMesh ribbon(const std::vector<CutLine>& lines, double half)
     for (const CutLine& line : lines) {
         const int first = static_cast<int>(mesh.vertices.size()), count = static_cast<int>(line.points.size());
         for (const Vec2d& p : line.points) {
-            mesh.vertices.push_back(in_space(p) - across);
-            mesh.vertices.push_back(in_space(p) + across);
+            mesh.vertices.emplace_back(in_space(p) - across);
+            mesh.vertices.emplace_back(in_space(p) + across);
         }
         for (int k = 0; k < count - (line.closed ? 0 : 1); ++k) {
             const int p = first + 2 * k, q = first + 2 * ((k + 1) % count);
@@ -87,7 +87,7 @@ class OutlineWalk {
             return line_.corner_missed();
         }
         const Vec3d position = inset > 0.0 ? Vec3d(p + inset / (1.0 + cosine) * (from + to)) : p;
-        if (offset_.surface().closest(position).distance >= (1.0 - OffsetSurface::kTolerance) * inset) {
+        if (offset_.holds(position)) {
             line_.add({position, (from + to).normalized(), inset, false}, corner);
         } else if (corner) {
             line_.corner_missed();
@@ -103,8 +103,7 @@ class OutlineWalk {
             const double turned = angle * k / steps;
             const Vec3d direction = std::cos(turned) * from + std::sin(turned) * across;
             const Vec3d position = p + inset * direction;
-            if (offset_.surface().closest(position).distance >= (1.0 - OffsetSurface::kTolerance) * inset)
-                line_.add({position, direction, inset, false}, corner && 2 * k == steps);
+            if (offset_.holds(position)) line_.add({position, direction, inset, false}, corner && 2 * k == steps);
         }
     }
 

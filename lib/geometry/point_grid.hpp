@@ -42,7 +42,7 @@ class PointGrid {
     using Cell = std::array<std::int64_t, 3>;
     struct Entry {
         Vec3d point;
-        Cell cell;
+        std::uint64_t key;
         std::size_t index;
     };
 
@@ -52,19 +52,25 @@ class PointGrid {
                 static_cast<std::int64_t>(std::floor(p.y() * inv_cell_)),
                 static_cast<std::int64_t>(std::floor(p.z() * inv_cell_))};
     }
-    [[nodiscard]] std::size_t bucket_of(const Cell& c) const
+    /// The same for cells 2^21 apart only, which no search reaches.
+    static std::uint64_t key_of(const Cell& c)
     {
-        const std::uint64_t mixed = static_cast<std::uint64_t>(c[0]) * 0x9e3779b97f4a7c15ULL ^
-                                    static_cast<std::uint64_t>(c[1]) * 0xc2b2ae3d27d4eb4fULL ^
-                                    static_cast<std::uint64_t>(c[2]) * 0x165667b19e3779f9ULL;
+        constexpr std::uint64_t bits = (std::uint64_t{1} << 21) - 1;
+        return (static_cast<std::uint64_t>(c[0]) & bits) | (static_cast<std::uint64_t>(c[1]) & bits) << 21 |
+               (static_cast<std::uint64_t>(c[2]) & bits) << 42;
+    }
+    [[nodiscard]] std::size_t bucket_of(std::uint64_t key) const
+    {
+        const std::uint64_t mixed = key * 0x9e3779b97f4a7c15ULL;
         return static_cast<std::size_t>((mixed ^ (mixed >> 32)) & mask_);
     }
     template <class Visit>
     void for_cell(const Cell& cell, Visit&& visit) const
     {
-        const std::size_t bucket = bucket_of(cell);
+        const std::uint64_t key = key_of(cell);
+        const std::size_t bucket = bucket_of(key);
         for (std::size_t k = starts_[bucket]; k < starts_[bucket + 1]; ++k)
-            if (entries_[k].cell == cell) visit(entries_[k]);
+            if (entries_[k].key == key) visit(entries_[k]);
     }
 
     double inv_cell_;

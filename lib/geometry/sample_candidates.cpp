@@ -113,8 +113,7 @@ class Sampler {
     {
         const double inset = offset_.inset();
         const Vec3d position = base + inset * direction;
-        if (offset_.surface().closest(position).distance < (1.0 - OffsetSurface::kTolerance) * inset) return;
-        result_.points.push_back({position, direction, inset, false});
+        if (offset_.holds(position)) result_.points.push_back({position, direction, inset, false});
     }
 
     [[nodiscard]] const Vec3d& vertex(int v) const { return mesh_.vertices[static_cast<std::size_t>(v)]; }

@@ -2,6 +2,8 @@
 
 #include "geometry/point_grid.hpp"
 
+#include <algorithm>
+
 namespace flotsam {
 
 std::vector<Vec3d> positions_of(std::span<const OffsetPoint> points)
@@ -15,15 +17,19 @@ std::vector<Vec3d> positions_of(std::span<const OffsetPoint> points)
 void sample_rods(std::vector<OffsetPoint>& samples, std::span<const BarePoint> bare, const OffsetSurface& offset,
                  double spacing)
 {
-    // At an ordinary convex corner the next sample is at most sqrt(3) insets and a hole away.
-    const double far = 1.1 * spacing + 1.8 * offset.inset(), apart = 0.9 * spacing;
-    PointGrid grid(positions_of(samples), far);
+    // At an ordinary convex corner the next sample of the layer is at most sqrt(3) insets and a hole away.
+    const double far = 1.1 * spacing + 1.8 * offset.inset(), apart = 0.8 * spacing;
+    const auto thick_end = std::partition(samples.begin(), samples.end(), [](const OffsetPoint& p) { return !p.thin; });
+    const auto first_thin = thick_end - samples.begin();
+    const PointGrid thick(positions_of({samples.data(), static_cast<std::size_t>(first_thin)}), far);
+    const auto covered = [&](const Vec3d& p) {
+        const auto near = [&](const OffsetPoint& sample) { return (sample.position - p).norm() < apart; };
+        return std::any_of(samples.begin() + first_thin, samples.end(), near);
+    };
     for (const BarePoint& point : bare) {
-        if (grid.nearest(point.base, far) < far) continue;
+        if (thick.nearest(point.base, far) < far || covered(point.base)) continue;
         const OffsetPoint deepest = offset.deepest_below(point.base, point.inward);
-        if (grid.nearest(deepest.position, apart) < apart) continue;
-        samples.push_back(deepest);
-        grid = PointGrid(positions_of(samples), far);
+        if (thick.nearest(deepest.position, apart) >= apart && !covered(deepest.position)) samples.push_back(deepest);
     }
 }
 

@@ -8,13 +8,15 @@
 #include "geometry/sample_candidates.hpp"
 #include "geometry/sample_rods.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace flotsam {
 namespace {
 
-constexpr double kCandidates = 10.0; ///< per sample
+constexpr double kManyCandidates = 20.0, kFewCandidates = 6.0; ///< per sample, of small and of large surfaces
+constexpr double kAllCandidates = 40000.0;                     ///< between them, altogether
 constexpr double kHexagonal =
     1.0746; ///< distance of neighbours in a hexagonal lattice of unit area each, sqrt(2/sqrt 3)
 // The push has the reach of the kernel and some of the last step's drift: that evens out the density of samples as
@@ -40,6 +42,14 @@ double covered_area(const SampleCandidates& candidates, double spacing)
         });
         area += candidates.area_each * same / (same + opposite);
     }
+    return area;
+}
+
+double mesh_area(const TriangleMesh& mesh)
+{
+    double area = 0.0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        area += 0.5 * (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0)).norm();
     return area;
 }
 
@@ -91,52 +101,63 @@ void drop_crowded(std::vector<OffsetPoint>& samples, double closest)
     samples = std::move(kept);
 }
 
-/// Candidates farther than `hole` from every sample become samples, farthest first.
+/// Candidates farther than `hole` from every sample become samples. Were there any?
 bool fill_holes(std::vector<OffsetPoint>& samples, const SampleCandidates& candidates, double hole)
 {
     const PointGrid grid(positions_of(samples), hole);
-    std::vector<OffsetPoint> lonely;
-    for (const OffsetPoint& point : candidates.points)
-        if (grid.nearest(point.position, hole) >= hole) lonely.push_back(point);
-    for (std::size_t i = 0; i < lonely.size(); ++i) {
-        bool free = true;
-        for (std::size_t k = 0; k < i && free; ++k)
-            free = (lonely[k].position - lonely[i].position).norm() > hole || lonely[k].depth < 0.0;
-        if (free) {
-            samples.push_back(lonely[i]);
-        } else {
-            lonely[i].depth = -1.0; // not taken: does not stand in the way of later ones
-        }
+    const auto before = static_cast<std::ptrdiff_t>(samples.size());
+    for (const OffsetPoint& point : candidates.points) {
+        const auto near = [&](const OffsetPoint& added) { return (added.position - point.position).norm() < hole; };
+        if (grid.nearest(point.position, hole) < hole) continue;
+        if (std::none_of(samples.begin() + before, samples.end(), near)) samples.push_back(point);
     }
-    return !lonely.empty();
+    return static_cast<std::ptrdiff_t>(samples.size()) > before;
+}
+
+/// `samples` come as those that stay where they are; the rest is chosen from the candidates and evened out.
+void choose_samples(std::vector<OffsetPoint>& samples, const SampleCandidates& candidates, std::size_t count,
+                    const OffsetSurface& offset, double spacing)
+{
+    const std::size_t fixed = samples.size();
+    samples.insert(samples.end(), candidates.points.begin(), candidates.points.end());
+    std::vector<OffsetPoint> chosen;
+    for (std::size_t i : eliminate_crowded(positions_of(samples), fixed, count, kHexagonal * spacing))
+        chosen.push_back(samples[i]);
+    samples = std::move(chosen);
+    std::vector<Vec3d> drift;
+    for (int step = 0; step < kSteps; ++step) repel(samples, drift, fixed, offset, spacing);
+    for (int round = 0; round < 3; ++round) {
+        drop_crowded(samples, kClosest * spacing);
+        if (!fill_holes(samples, candidates, kHole * spacing)) return;
+        drift.clear();
+        for (int step = 0; step < 5; ++step) repel(samples, drift, fixed, offset, spacing);
+    }
+    drop_crowded(samples, kClosest * spacing);
 }
 
 std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const SurfaceSampleSettings& settings)
 {
     const double d = settings.spacing;
-    const SampleCandidates candidates = sample_candidates(offset, kCandidates / (d * d), settings.seed);
+    const double rough_count = mesh_area(offset.surface().mesh()) / (d * d);
+    const double each = std::clamp(kAllCandidates / rough_count, kFewCandidates, kManyCandidates);
+    const SampleCandidates candidates = sample_candidates(offset, each / (d * d), settings.seed);
     std::vector<OffsetPoint> samples = sample_creases(offset, d);
-    const std::size_t fixed = samples.size();
     if (!candidates.points.empty()) {
+        // Samples on a rim have half of their surroundings off the surface.
         const double area = covered_area(candidates, d) + 0.5 * d * rim_length(offset);
         const auto count = static_cast<std::size_t>(std::max(1.0, std::round(area / (d * d))));
-        samples.insert(samples.end(), candidates.points.begin(), candidates.points.end());
-        std::vector<OffsetPoint> chosen;
-        for (std::size_t i : eliminate_crowded(positions_of(samples), fixed, count, kHexagonal * d))
-            chosen.push_back(samples[i]);
-        samples = std::move(chosen);
-        std::vector<Vec3d> drift;
-        for (int step = 0; step < kSteps; ++step) repel(samples, drift, fixed, offset, d);
-        for (int round = 0; round < 3; ++round) {
-            drop_crowded(samples, kClosest * d);
-            if (!fill_holes(samples, candidates, kHole * d)) break;
-            drift.clear();
-            for (int step = 0; step < 5; ++step) repel(samples, drift, fixed, offset, d);
-        }
-        drop_crowded(samples, kClosest * d);
+        choose_samples(samples, candidates, count, offset, d);
     }
     sample_rods(samples, candidates.bare, offset, d);
     return samples;
+}
+
+/// Fins without thickness have their solid on the wrong side of both faces.
+void drop_wrong_side(std::vector<OffsetPoint>& samples, const SurfaceQuery& surface, bool inside)
+{
+    const MeshTopology mesh = topology(surface.mesh());
+    if (std::find(mesh.on_boundary.begin(), mesh.on_boundary.end(), true) != mesh.on_boundary.end()) return;
+    std::erase_if(samples, [&](const OffsetPoint& sample) { return surface.inside(sample.position) != inside; });
 }
 
 } // namespace
@@ -147,8 +168,10 @@ SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSe
     require(settings.inset >= 0.0, "inset of samples must be >= 0 [m]", settings.inset);
     require(settings.dimensions == 2 || settings.dimensions == 3, "dimensions must be 2 or 3", settings.dimensions);
 
-    const std::vector<OffsetPoint> points =
+    std::vector<OffsetPoint> points =
         settings.dimensions == 2 ? sample_outline(surface, settings) : sample_layer({surface, settings}, settings);
+    if (settings.inset > 0.0 && settings.solid != SurfaceSampleSettings::Solid::both)
+        drop_wrong_side(points, surface, settings.solid == SurfaceSampleSettings::Solid::inside);
     SurfaceSamples samples;
     std::size_t thin = 0;
     for (const OffsetPoint& point : points) {

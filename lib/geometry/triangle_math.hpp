@@ -38,8 +38,8 @@ inline Vec3d closest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b,
     const double sum = va + vb + vc;
     if (sum > 0.0) return a + ab * (vb / sum) + ac * (vc / sum);
 
-    const Vec3d on_ab = closest_on_segment(p, a, b), on_bc = closest_on_segment(p, b, c);
-    const Vec3d on_ca = closest_on_segment(p, c, a);
+    Vec3d on_ab = closest_on_segment(p, a, b), on_bc = closest_on_segment(p, b, c);
+    Vec3d on_ca = closest_on_segment(p, c, a);
     const double ab_sq = (p - on_ab).squaredNorm(), bc_sq = (p - on_bc).squaredNorm(),
                  ca_sq = (p - on_ca).squaredNorm();
     if (ab_sq <= bc_sq && ab_sq <= ca_sq) return on_ab;

@@ -11,34 +11,29 @@
 namespace flotsam {
 namespace {
 
-/// The k-th of `count` sites taken out of [0, sites), evenly.
-std::int64_t even_site(std::int64_t k, std::int64_t count, std::int64_t sites)
-{
-    return (2 * k + 1) * sites / (2 * count);
-}
+using Site = std::array<std::int64_t, 2>;
 
-/// `count` of the columns * rows sites of one layer, spread evenly: full rows alternate with sparser ones otherwise.
-std::vector<std::array<std::int64_t, 2>> spread_over_layer(std::int64_t columns, std::int64_t rows, std::int64_t count)
+/// `count` of the columns * rows sites of a layer, spread evenly: the next free ones along a sequence that covers the
+/// plane evenly however long it is. **Source:** Roberts 2018, "The unreasonable effectiveness of quasirandom
+/// sequences".
+std::vector<Site> spread_over_layer(std::int64_t columns, std::int64_t rows, std::int64_t count)
 {
-    // Sites are numbered along a lattice of rank one, whose prefixes cover the layer evenly (golden ratio steps).
-    constexpr double kPlastic = 1.324717957244746; // Roberts 2018: the plane's counterpart of the golden ratio
+    std::vector<Site> sites;
+    if (rows == 1) {
+        for (std::int64_t k = 0; k < count; ++k) sites.push_back({(2 * k + 1) * columns / (2 * count), 0});
+        return sites;
+    }
+    constexpr double kPlastic = 1.324717957244746; // what the golden ratio is to the line
     std::vector<bool> taken(static_cast<std::size_t>(columns * rows), false);
-    std::vector<std::array<std::int64_t, 2>> sites;
-    for (std::int64_t k = 0; static_cast<std::int64_t>(sites.size()) < count; ++k) {
-        if (rows == 1) {
-            sites.push_back({even_site(k, count, columns), 0});
-            continue;
-        }
-        const double u = 0.5 + static_cast<double>(k) / kPlastic;
-        const double v = 0.5 + static_cast<double>(k) / (kPlastic * kPlastic);
-        auto x = static_cast<std::int64_t>((u - std::floor(u)) * static_cast<double>(columns));
-        auto y = static_cast<std::int64_t>((v - std::floor(v)) * static_cast<double>(rows));
-        while (taken[static_cast<std::size_t>(y * columns + x)]) { // the next free one
-            x = (x + 1) % columns;
-            if (x == 0) y = (y + 1) % rows;
-        }
-        taken[static_cast<std::size_t>(y * columns + x)] = true;
-        sites.push_back({x, y});
+    for (std::int64_t k = 0; k < count; ++k) {
+        const double u = 0.5 + static_cast<double>(k) / kPlastic,
+                     v = 0.5 + static_cast<double>(k) / (kPlastic * kPlastic);
+        const auto x = static_cast<std::int64_t>((u - std::floor(u)) * static_cast<double>(columns));
+        const auto y = static_cast<std::int64_t>((v - std::floor(v)) * static_cast<double>(rows));
+        std::int64_t site = y * columns + x;
+        while (taken[static_cast<std::size_t>(site)]) site = (site + 1) % (columns * rows);
+        taken[static_cast<std::size_t>(site)] = true;
+        sites.push_back({site % columns, site / columns});
     }
     return sites;
 }
@@ -138,24 +133,24 @@ std::vector<Vec3d> fill_box(const Aabb& box, double spacing, int dimensions)
 {
     require_lattice(spacing, dimensions);
     require(!box.empty(), "a box to fill must have min <= max");
-    const Vec3d size = box.size();
-    const auto rows_along = [&](double length) { return std::max<std::int64_t>(1, std::llround(length / spacing)); };
-    const std::int64_t columns = rows_along(size.x()), rows = dimensions == 2 ? 1 : rows_along(size.y());
-    const double width = size.x() / static_cast<double>(columns);
-    const double depth = dimensions == 2 ? spacing : size.y() / static_cast<double>(rows);
-    const double cell = dimensions == 2 ? spacing * spacing * spacing : std::pow(spacing, 3);
-    const double volume = size.x() * (dimensions == 2 ? spacing : size.y()) * size.z();
-    const double height = cell / (width * depth);
+    Vec3d size = box.size();
+    if (dimensions == 2) size.y() = spacing;
+    const auto along = [&](double length) { return std::max<std::int64_t>(1, std::llround(length / spacing)); };
+    const std::int64_t columns = along(size.x()), rows = along(size.y()), per_layer = columns * rows;
+    const double width = size.x() / static_cast<double>(columns), depth = size.y() / static_cast<double>(rows);
+    const double cell = std::pow(spacing, 3), height = cell / (width * depth);
+    // Where the top layer fills less than half of its height it would lie above the box.
+    const double highest = std::max(size.z() - 0.25 * height, 0.5 * size.z());
+    const double first_y = dimensions == 2 ? 0.0 : box.min.y() + 0.5 * depth;
 
-    const std::int64_t total = std::llround(volume / cell), per_layer = columns * rows;
+    const std::int64_t total = std::llround(size.prod() / cell), full = total / per_layer;
     std::vector<Vec3d> points;
     points.reserve(static_cast<std::size_t>(total));
     const auto add = [&](std::int64_t x, std::int64_t y, std::int64_t layer) {
-        const double y_at = dimensions == 2 ? 0.0 : box.min.y() + (static_cast<double>(y) + 0.5) * depth;
-        const double above = std::min((static_cast<double>(layer) + 0.5) * height, size.z() - 0.25 * height);
-        points.emplace_back(box.min.x() + (static_cast<double>(x) + 0.5) * width, y_at, box.min.z() + above);
+        const double above = std::min((static_cast<double>(layer) + 0.5) * height, highest);
+        points.emplace_back(box.min.x() + (static_cast<double>(x) + 0.5) * width,
+                            first_y + static_cast<double>(y) * depth, box.min.z() + above);
     };
-    const std::int64_t full = total / per_layer;
     for (std::int64_t layer = 0; layer < full; ++layer)
         for (std::int64_t y = 0; y < rows; ++y)
             for (std::int64_t x = 0; x < columns; ++x) add(x, y, layer);

@@ -30,7 +30,8 @@ class SurfaceQuery {
     /// Closest point of the surface.
     [[nodiscard]] Closest closest(const Vec3d& point) const;
 
-    /// Generalized winding number: 1 inside a closed outward mesh, 0 outside, in between near an open one.
+    /// Generalized winding number: 1 inside a closed outward mesh, 0 outside, in between near an open one. Exact for up
+    /// to 64 triangles, to about 0.03 for more.
     /// **Source:** Jacobson et al. 2013; Barill et al. 2018 for the tree.
     [[nodiscard]] double winding_number(const Vec3d& point) const;
 
@@ -45,7 +46,9 @@ class SurfaceQuery {
         Vec3d normal = Vec3d::Zero(); ///< of the triangle that was hit, pointing against the motion
         int triangle = -1;
     };
-    /// First place where a point going straight from `from` to `to` crosses the surface, if it does.
+    /// First place where a point going straight from `from` to `to` crosses the surface, if it does. Edges and corners
+    /// of triangles count, and so does a start or an end on the surface (to 1e-13 of the coordinates), so that no path
+    /// of several sweeps gets through unseen; moving within a triangle's plane does not.
     [[nodiscard]] std::optional<Hit> sweep(const Vec3d& from, const Vec3d& to) const;
 
   private:

@@ -27,10 +27,15 @@ struct SurfaceSamples {
     double thin_fraction = 0.0;   ///< of the samples that sit in the middle of a part thinner than 2 insets
 };
 
-/// Blue-noise (Poisson disk) samples of the surface that lies `inset` deep in the solid: no two closer than about
-/// 0.8 spacings, no hole wider than about 1.2, evenly over edges and corners. Where the solid is thinner than
-/// two insets they lie in its middle, in one layer. The same input gives the same samples.
-/// **Source:** Yuksel 2015 (sample elimination), then a few steps of repulsion on the surface.
+/// Blue-noise (Poisson disk) samples of the surface that lies `inset` deep in the solid, one per spacing squared: no
+/// two closer than 0.75 spacings, no point of the surface farther than about 0.85 from one. Around bends of more than
+/// 180 degrees (the outside of a container) the surface is round; along its sharp edges and at the rims of open sheets
+/// samples stand in rows, with one in each corner. Where the solid is thinner than two insets they lie in its middle,
+/// in one layer. In two dimensions they stand at equal steps along the outline. The same input gives the same samples.
+/// **Source:** Yuksel 2015 (sample elimination), then repulsion along the surface.
+///
+/// Throws std::invalid_argument for settings out of range, InputError in two dimensions for a mesh that does not cross
+/// the plane y = 0.
 [[nodiscard]] SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings);
 
 } // namespace flotsam

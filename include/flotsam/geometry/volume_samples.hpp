@@ -11,7 +11,9 @@ namespace flotsam {
 /// part, evenly, so that the volume is what was asked for to one point.
 [[nodiscard]] std::vector<Vec3d> fill_box(const Aabb& box, double spacing, int dimensions);
 
-/// Points of the cubic lattice of `spacing` that lie inside a closed mesh (in 2-D: in its cut at y = 0).
+/// Points of the cubic lattice of `spacing` that lie inside a closed mesh (in 2-D: in its cut at y = 0). Along each
+/// axis the lattice has a point or the middle between two in the middle of the mesh, whichever brings the number of
+/// points closest to the volume; what is left is of the order of the surface's roughness.
 [[nodiscard]] std::vector<Vec3d> fill_mesh(const SurfaceQuery& closed, double spacing, int dimensions);
 
 } // namespace flotsam

@@ -4,7 +4,7 @@
 
 #include <cmath>
 #include <numbers>
-#include <string>
+#include <vector>
 
 namespace flotsam::test_meshes {
 
@@ -53,8 +53,8 @@ inline TriangleMesh sphere(double radius, int rings)
     return mesh;
 }
 
-/// Closed prism along y from -half to +half over a polygon in x and z, counter-clockwise as seen from -y. Convex
-/// polygons only: the ends are fans.
+/// Closed prism along y from -half to +half over a polygon in x and z, counter-clockwise as seen from -y. The ends are
+/// fans about the first corner, which must see all others.
 inline TriangleMesh prism(const std::vector<Eigen::Vector2d>& outline, double half)
 {
     TriangleMesh mesh;
@@ -82,6 +82,14 @@ inline TriangleMesh disc(double radius, int corners)
         outline.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
     }
     return prism(outline, 0.5);
+}
+
+/// An L two wide and high, of thickness one, `half` to both sides of y = 0; its inner corner is (1, 1).
+inline TriangleMesh angle_bar(double size, double half)
+{
+    std::vector<Eigen::Vector2d> outline{{1, 1}, {1, 2}, {0, 2}, {0, 0}, {2, 0}, {2, 1}};
+    for (auto& p : outline) p *= size;
+    return prism(outline, half);
 }
 
 /// Volume by the divergence theorem.
