@@ -1,5 +1,6 @@
 #include "flotsam/geometry/load_mesh.hpp"
 
+#include "assimp_files.hpp"
 #include "flotsam/core/contracts.hpp"
 #include "mesh_file_structure.hpp"
 
@@ -119,6 +120,7 @@ class SceneReader {
 TriangleMesh read_with_assimp(const path& file)
 {
     Assimp::Importer importer;
+    importer.SetIOHandler(new AssimpFiles); // the importer's from here on
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true); // else nodes without geometry become bones
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);

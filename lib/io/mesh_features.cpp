@@ -1,5 +1,6 @@
 #include "io/mesh_features.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -63,7 +64,7 @@ std::vector<Vec3> corner_normals(const TriangleMesh& mesh, double crease_deg)
                 const std::size_t other = fans.triangle[k];
                 if (other != t && bent_less(flat[t], flat[other], cos_limit)) sum += flat[other];
             }
-            normals.push_back(sum.normalized().cast<Scalar>());
+            normals.emplace_back(sum.normalized().cast<Scalar>());
         }
     }
     return normals;
@@ -77,7 +78,7 @@ std::vector<std::array<int, 2>> feature_edges(const TriangleMesh& mesh, double c
         for (std::size_t k = 0; k < 3; ++k) {
             const int a = mesh.triangles[t][k];
             const int b = mesh.triangles[t][(k + 1) % 3];
-            triangles_of_edge[{std::min(a, b), std::max(a, b)}].push_back(t);
+            triangles_of_edge[{std::min(a, b), std::max(a, b)}].emplace_back(t);
         }
     }
     const double cos_limit = cosine(crease_deg);

@@ -46,7 +46,7 @@ class VtpReader {
         const std::string kind = std::is_floating_point_v<T> ? "Float" : std::is_signed_v<T> ? "Int" : "UInt";
         expect(a.type == kind + std::to_string(8 * sizeof(T)), "type of " + name);
         std::vector<T> result(a.bytes / sizeof(T));
-        std::memcpy(result.data(), text_.data() + begin_ + a.offset + 8, a.bytes);
+        if (a.bytes > 0) std::memcpy(result.data(), text_.data() + begin_ + a.offset + 8, a.bytes);
         return result;
     }
 
