@@ -20,7 +20,7 @@ class Progress final : public RunObserver {
 
     std::ostream& out_;
     bool is_terminal_;
-    double next_draw_ = 0.0; ///< seconds on a terminal, else a fraction of the run
+    double next_draw_ = 0.1; ///< seconds on a terminal, else a fraction of the run
 };
 
 /// Says nothing.

@@ -93,6 +93,19 @@ Vec3d read_inertia(const JsonNode& node)
     return {v[0], v[1], v[2]};
 }
 
+/// A lock holds an axis still and says nothing of bodies that are not dynamic.
+void refuse_idle_locks(const JsonObject& object, const SceneBody& body)
+{
+    for (std::size_t k = 0; k < 6; ++k) {
+        if (!body.lock[k]) continue;
+        const JsonNode lock = object.required("lock");
+        if (body.motion != SceneBody::Motion::dynamic) lock.refuse("is for dynamic bodies only");
+        const auto axis = static_cast<Eigen::Index>(k % 3);
+        if ((k < 3 ? body.velocity : body.angular_velocity)[axis] != 0.0)
+            lock.refuse("holds an axis along which the body is given a velocity");
+    }
+}
+
 void read_motion(const JsonObject& object, const ReadContext& context, SceneBody& body)
 {
     using Motion = SceneBody::Motion;
@@ -105,8 +118,7 @@ void read_motion(const JsonObject& object, const ReadContext& context, SceneBody
     if (body.motion == Motion::fixed && !(body.velocity.isZero(0.0) && body.angular_velocity.isZero(0.0)))
         object.node().refuse("is fixed and has a velocity; \"motion\": \"moving\" moves at a given velocity");
     body.lock = read_lock(object);
-    const bool locked = std::any_of(body.lock.begin(), body.lock.end(), [](bool axis) { return axis; });
-    if (locked && body.motion != Motion::dynamic) object.required("lock").refuse("is for dynamic bodies only");
+    refuse_idle_locks(object, body);
 }
 
 WallSide read_side(const JsonObject& mesh)

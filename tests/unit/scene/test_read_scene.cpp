@@ -61,7 +61,7 @@ TEST_CASE("every key of the format is read", "[scene]")
                  {"mesh": {"file": "tank.stl", "scale": 0.001, "side": "both", "rotation_deg": [0, 0, 90]}}],
       "bodies": [{"name": "hull", "shape": {"mesh": {"file": "../hull.obj", "scale": 2, "up": "x"}}, "mass": 12.5,
                   "position": [0.5,0.5,0.45], "rotation_deg": [0,5,0], "velocity": [1,0,0], "friction": 0.1,
-                  "angular_velocity": [0,0,2], "lock": ["x","ry"], "center_of_mass": [0,0,0.05], "inertia": [1,2,2.5]},
+                  "angular_velocity": [0,0,2], "lock": ["y","ry"], "center_of_mass": [0,0,0.05], "inertia": [1,2,2.5]},
                  {"name": "post", "shape": {"compound": [{"cylinder": [0.1, 1]}, {"sphere": 0.2, "position": [0,0,0.6]}]},
                   "motion": "fixed"},
                  {"name": "gate", "shape": {"box": [1,1,1]}, "motion": "moving", "velocity": [0,0,1]}],
@@ -91,7 +91,7 @@ TEST_CASE("every key of the format is read", "[scene]")
     const SceneBody& hull = scene.bodies.at(0);
     CHECK(std::get<SceneMesh>(hull.parts.at(0).shape).file == "hull.obj");
     CHECK(hull.mass == 12.5);
-    CHECK(hull.lock == std::array<bool, 6>{true, false, false, false, true, false});
+    CHECK(hull.lock == std::array<bool, 6>{false, true, false, false, true, false});
     CHECK(hull.center_of_mass == Vec3d(0, 0, 0.05));
     CHECK(hull.inertia == Vec3d(1, 2, 2.5));
     CHECK(hull.angular_velocity == Vec3d(0, 0, 2));
@@ -181,6 +181,8 @@ TEST_CASE("settings out of their range are refused", "[scene]")
     CHECK_FALSE(refusal_of(kCrate, {"bodies.crate.inertia=[1,1,3]"}).empty());
     CHECK_FALSE(refusal_of(kCrate, {"bodies.crate.motion=fixed", "bodies.crate.velocity=[1,0,0]"}).empty());
     CHECK_FALSE(refusal_of(kCrate, {"bodies.crate.motion=fixed", "bodies.crate.lock=[\"x\"]"}).empty());
+    CHECK_FALSE(refusal_of(kCrate, {"bodies.crate.lock=[\"ry\"]", "bodies.crate.angular_velocity=[0,1,0]"}).empty());
+    CHECK(refusal_of(kCrate, {"bodies.crate.lock=[\"ry\"]", "bodies.crate.angular_velocity=[1,0,0]"}).empty());
     CHECK_FALSE(refusal_of(kRaft, {"probes.0.name=raft"}).empty());
 }
 

@@ -1,0 +1,119 @@
+#include "../scene/scene_texts.hpp"
+#include "../scene/support_directory.hpp"
+#include "support/catch.hpp"
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+using namespace flotsam::testing;
+
+namespace {
+
+struct Outcome {
+    int code = -1;
+    std::string out, err;
+};
+
+/// Runs the program in a directory of its own.
+Outcome run_program(const TemporaryDirectory& directory, const std::string& arguments)
+{
+    const std::string command = "cd '" + directory.path().string() + "' && '" FLOTSAM_PROGRAM "' " + arguments +
+                                " >stdout.txt 2>stderr.txt </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, directory.read("stdout.txt"), directory.read("stderr.txt")};
+}
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST_CASE("help says what there is", "[cli]")
+{
+    const TemporaryDirectory directory("flotsam_cli_help");
+    for (const char* arguments : {"--help", "run --help", "check --help"}) {
+        const Outcome help = run_program(directory, arguments);
+        CHECK(help.code == 0);
+        CHECK(contains(help.out, "Example"));
+        CHECK(help.err.empty());
+    }
+    CHECK(contains(run_program(directory, "--help").out, "report.json"));
+    CHECK(contains(run_program(directory, "--version").out, "flotsam 0."));
+}
+
+TEST_CASE("a wrong command line is refused with code 2", "[cli]")
+{
+    const TemporaryDirectory directory("flotsam_cli_usage");
+    for (const char* arguments : {"", "walk", "run", "run a.json --out", "run a.json --threads many", "check --x a"}) {
+        const Outcome wrong = run_program(directory, arguments);
+        INFO(arguments);
+        CHECK(wrong.code == 2);
+        CHECK(wrong.out.empty());
+        CHECK(contains(wrong.err, "error: "));
+    }
+}
+
+TEST_CASE("refused input exits with 2 and one sentence, and writes nothing", "[cli]")
+{
+    const TemporaryDirectory directory("flotsam_cli_refused");
+    directory.write("scene.json", kRaft);
+    directory.write("broken.json", "{\"flotsam\": 1,");
+    for (const char* arguments :
+         {"run none.json --out out", "run broken.json --out out", "run scene.json --out out --set bodies.raft.mass=1",
+          "run scene.json --out out --set duration=-1", "run scene.json --out out --set particle_spacing=1e-9",
+          "run scene.json --out out --set bodies.raft.position=[9,9]", "check broken.json"}) {
+        const Outcome refused = run_program(directory, arguments);
+        INFO(arguments << ": " << refused.err);
+        CHECK(refused.code == 2);
+        CHECK(refused.out.empty());
+        CHECK(refused.err.rfind("error: ", 0) == 0);
+        CHECK(refused.err.find('\n') == refused.err.size() - 1);
+        CHECK_FALSE(std::filesystem::exists(directory.path() / "out"));
+    }
+}
+
+TEST_CASE("run records, prints plain lines and ends in the table of drafts", "[cli]")
+{
+    const TemporaryDirectory directory("flotsam_cli_run");
+    directory.write("scene.json", kRaft);
+    const Outcome run = run_program(directory, "run scene.json --set bodies.raft.density=600 --threads 2");
+    INFO(run.err);
+    CHECK(run.code == 0);
+    CHECK(run.err.empty());
+    for (const char* part : {"100 %", "x real time", "raft", "0.600", "out/scene", "report.json"})
+        CHECK(contains(run.out, part));
+    CHECK_FALSE(contains(run.out, "\r"));
+    CHECK(std::filesystem::exists(directory.path() / "out/scene/history.csv"));
+    CHECK(run_program(directory, "run scene.json --quiet --out again --threads 2").out.empty());
+}
+
+TEST_CASE("check says what a scene holds", "[cli]")
+{
+    const TemporaryDirectory directory("flotsam_cli_check");
+    directory.write("scene.json", kRaft);
+    const Outcome check = run_program(directory, "check scene.json");
+    CHECK(check.code == 0);
+    CHECK(contains(check.out, "nothing wrong"));
+    CHECK(contains(check.out, "raft"));
+    CHECK(contains(check.out, "note: "));
+}
+
+TEST_CASE("a full disk ends a run with code 1 and the file's name", "[cli]")
+{
+    // A file size limit stands for the disk; vtk frames are the first to pass it.
+    const TemporaryDirectory directory("flotsam_cli_full");
+    directory.write("scene.json", kRaft);
+    const std::string command = "cd '" + directory.path().string() +
+                                "' && trap '' XFSZ && ulimit -f 8 && '" FLOTSAM_PROGRAM
+                                "' run scene.json --set output.vtk=true --quiet --out out 2>stderr.txt";
+    const int status = std::system(command.c_str());
+    const std::string err = directory.read("stderr.txt");
+    INFO(err);
+    CHECK(WEXITSTATUS(status) == 1);
+    CHECK(contains(err, "error: "));
+    CHECK(contains(err, ".vtp"));
+    CHECK_FALSE(std::filesystem::exists(directory.path() / "out"));
+}

@@ -1,0 +1,212 @@
+#include "flotsam/scene/run_scene.hpp"
+#include "scene_texts.hpp"
+#include "support/catch.hpp"
+#include "support_directory.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+using namespace flotsam;
+using namespace flotsam::testing;
+
+namespace {
+
+struct Watcher final : RunObserver {
+    int starts = 0, steps = 0;
+    double time = 0.0;
+    void on_start(std::size_t, std::size_t, const std::vector<std::string>&) override { ++starts; }
+    void on_step(const RunProgress& progress) override
+    {
+        ++steps;
+        time = progress.time;
+    }
+};
+
+RunReport ran(const std::string& text, const std::vector<std::string>& overrides, const std::filesystem::path& out = {},
+              int threads = 2)
+{
+    Watcher watcher;
+    return run_scene(parse_scene(text, "test.json", overrides), {out, threads}, watcher);
+}
+
+std::vector<std::vector<std::string>> table(const std::string& csv)
+{
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream lines(csv);
+    for (std::string line; std::getline(lines, line);) {
+        rows.emplace_back();
+        std::istringstream cells(line);
+        for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+    }
+    return rows;
+}
+
+} // namespace
+
+TEST_CASE("a run reports what the format promises", "[scene][run]")
+{
+    const TemporaryDirectory directory("flotsam_run");
+    const auto out = directory.path() / "out";
+    Watcher watcher;
+    const SceneFile scene = parsed(kRaft, {"output={\"frames_per_second\": 30, \"vtk\": true}"});
+    const RunReport report = run_scene(scene, {out, 2}, watcher);
+    CHECK(watcher.starts == 1);
+    CHECK(watcher.steps == report.steps);
+    CHECK(watcher.time == Approx(0.1));
+
+    const auto json = nlohmann::json::parse(directory.read("out/report.json"));
+    for (const char* key : {"version", "scene", "threads", "particles", "simulated_seconds", "steps", "wall_seconds",
+                            "stage_seconds", "iterations", "unconverged_steps", "compression", "leaked",
+                            "peak_memory_bytes", "state_hash", "ledger", "bodies", "probes"}) {
+        INFO(key);
+        CHECK(json.contains(key));
+    }
+    for (const char* key : {"name", "mass", "volume", "position", "rotation_deg", "velocity", "tilt_deg", "waterline",
+                            "draft", "exact_draft", "force_fluid_mean", "torque_fluid_mean"}) {
+        INFO(key);
+        CHECK(json["bodies"][0].contains(key));
+    }
+    CHECK(json["particles"]["fluid"] == report.fluid_particles);
+    CHECK(json["bodies"][0]["mass"].get<double>() == Approx(15.0));
+    CHECK(json["probes"][0]["name"] == "floor");
+    CHECK(json["state_hash"].get<std::string>().size() == 16);
+    CHECK(json["ledger"]["momentum_error_relative"].get<double>() < 1e-4);
+
+    const auto rows = table(directory.read("out/history.csv"));
+    REQUIRE(rows.size() == 5); // the header, t = 0, two frames and the end
+    CHECK(rows[0].size() == 1 + 18 + 2);
+    CHECK(rows[0][1] == "raft.x");
+    CHECK(rows[0][18] == "raft.tz");
+    CHECK(rows[0][19] == "floor");
+    CHECK(std::stod(rows[2][0]) == Approx(1.0 / 30.0).epsilon(1e-8));
+    CHECK(std::stod(rows[4][0]) == Approx(0.1).epsilon(1e-8));
+    for (const char* file :
+         {"particles.pvd", "bodies.pvd", "vtk/particles_0003.vtp", "vtk/bodies_0003.vtp", "vtk/walls.vtp"})
+        CHECK(std::filesystem::exists(out / file));
+}
+
+TEST_CASE("forces in the history add up to what a held body feels", "[scene][run]")
+{
+    // Held wholly under water: the force is the displaced weight, whatever the way it is averaged.
+    const std::vector<std::string> held{"bodies.raft.position=[0.5,0.17]", "bodies.raft.motion=fixed", "duration=0.5"};
+    const RunReport report = ran(kRaft, held);
+    const double weight = 1000.0 * 9.81 * 0.3 * 0.1;
+    CHECK(report.bodies.at(0).force_fluid_mean.z() == Approx(weight).epsilon(0.15)); // five spacings thick
+    CHECK(report.bodies[0].position.z() == 0.17);
+    CHECK(report.bodies[0].velocity.norm() == 0.0);
+}
+
+TEST_CASE("bodies fall, stay locked and move as the scene says", "[scene][run]")
+{
+    // Thrown up from above the water: nothing but gravity acts in a tenth of a second.
+    const std::vector<std::string> flying{"bodies.raft.position=[0.5,0.6]", "bodies.raft.velocity=[0.5,1]"};
+    const RunReport free = ran(kRaft, flying);
+    CHECK(free.bodies.at(0).velocity.z() == Approx(1.0 - 0.981).epsilon(0.01));
+    CHECK(free.bodies[0].position.x() == Approx(0.55).epsilon(0.001));
+    const std::vector<std::string> locked{"bodies.raft.position=[0.5,0.6]", "bodies.raft.lock=[\"z\"]"};
+    CHECK(ran(kRaft, locked).bodies.at(0).position.z() == Approx(0.6).epsilon(1e-12));
+    auto moving = flying;
+    moving.emplace_back("bodies.raft.motion=moving");
+    const RunReport moved = ran(kRaft, moving);
+    CHECK(moved.bodies.at(0).position.z() == Approx(0.7).epsilon(1e-6));
+    CHECK(moved.bodies[0].position.x() == Approx(0.55).epsilon(1e-6));
+}
+
+TEST_CASE("a body's place is its centre of mass, its rotation that of the shape", "[scene][run]")
+{
+    // A compound whose principal axes are turned against the shape's
+    const std::string text = R"({"flotsam": 1, "particle_spacing": 0.05, "duration": 0.02,
+      "fluids": [{"blocks": [{"min": [0,0,0], "max": [0.5,0.5,0.2]}]}],
+      "walls": [{"box": {"min": [0,0,0], "max": [1,1,2], "open": ["+z"]}}],
+      "bodies": [{"name": "b", "mass": 2, "position": [0.5,0.5,1.2], "rotation_deg": [0,0,30],
+        "shape": {"compound": [{"box": [0.4,0.1,0.1]}, {"box": [0.1,0.3,0.1], "position": [0.15,0.2,0]}]}}]})";
+    const RunReport report = ran(text, {});
+    const double c = 3.0 / 7.0; // of the volume in the second box
+    const Vec3d center = Eigen::AngleAxisd(std::acos(-1.0) / 6.0, Vec3d::UnitZ()) * Vec3d(0.15 * c, 0.2 * c, 0.0);
+    CHECK(report.bodies.at(0).position.x() == Approx(0.5 + center.x()).epsilon(1e-6));
+    CHECK(report.bodies[0].position.y() == Approx(0.5 + center.y()).epsilon(1e-6));
+    CHECK(report.bodies[0].rotation_deg.z() == Approx(30.0).epsilon(1e-6));
+    CHECK(report.bodies[0].tilt_deg == Approx(0.0).margin(1e-5));
+}
+
+TEST_CASE("meshes of every kind come to rest on the floor", "[scene][run]")
+{
+    struct Case {
+        const char* shape;
+        double rests_at; ///< height of its centre of mass [m]
+    };
+    const Case each = GENERATE(values<Case>({
+        {R"({"mesh": {"file": "ring_buoy.stl"}})", 0.035}, // not convex: the triangles themselves
+        {R"({"mesh": {"file": "crate.glb"}})", 0.06},      // convex: its hull
+        {R"({"cylinder": [0.1, 0.12]})", 0.06},            // Bullet's own
+        {R"({"compound": [{"box": [0.2, 0.2, 0.1]}, {"box": [0.2, 0.2, 0.1], "position": [0, 0, 0.1]}]})", 0.1},
+    }));
+    const bool in_mesh = GENERATE(false, true);
+    const TemporaryDirectory directory("flotsam_rest");
+    directory.write("floor.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");
+    const std::string wall = in_mesh ? R"({"mesh": {"file": ")" + (directory.path() / "floor.obj").string() + R"("}})"
+                                     : R"({"box": {"min": [-1,-1,0], "max": [1,1,1], "open": ["+z"]}})";
+    const std::string text = R"({"flotsam": 1, "particle_spacing": 0.04, "duration": 0.6,
+      "fluids": [{"blocks": [{"min": [-0.9,-0.9,0], "max": [-0.8,-0.8,0.1]}]}], "walls": [)" +
+                             wall + R"(], "bodies": [{"name": "b", "density": 1500, "position": [0.3,0.3,0.2],
+      "shape": )" + each.shape +
+                             "}]}";
+    Watcher watcher;
+    const RunReport report = run_scene(parse_scene(text, FLOTSAM_DATA_DIR "/meshes/scene.json"), {{}, 1}, watcher);
+    INFO(each.shape << (in_mesh ? " on a mesh" : " in a box"));
+    CHECK(report.bodies.at(0).position.z() == Approx(each.rests_at).margin(0.003));
+    CHECK(report.bodies[0].velocity.norm() < 0.1); // mesh against mesh trembles
+    CHECK(report.bodies[0].tilt_deg < 2.0);
+}
+
+TEST_CASE("the exact draft is that of the pose, and heavy bodies have none", "[scene][run]")
+{
+    const std::vector<std::string> flying{"bodies.raft.position=[0.5,0.6]", "duration=0.02"};
+    CHECK(ran(kRaft, flying).bodies.at(0).exact_draft.value() == Approx(0.05));
+    auto tall = flying;
+    tall.emplace_back("bodies.raft.rotation_deg=[0,90,0]");
+    const RunReport turned = ran(kRaft, tall);
+    CHECK(turned.bodies.at(0).exact_draft.value() == Approx(0.15));
+    CHECK(turned.bodies[0].tilt_deg == Approx(90.0));
+    auto heavy = flying;
+    heavy.emplace_back("bodies.raft.density=1100");
+    CHECK_FALSE(ran(kRaft, heavy).bodies.at(0).exact_draft);
+}
+
+TEST_CASE("runs repeat whatever the number of threads", "[scene][run][determinism]")
+{
+    const std::uint64_t one = ran(kRaft, {}, {}, 1).state_hash;
+    CHECK(ran(kRaft, {}, {}, 3).state_hash == one);
+    CHECK(ran(kRaft, {"gravity=[0,-9]"}, {}, 1).state_hash != one);
+}
+
+TEST_CASE("a refused scene leaves an older output alone", "[scene][run]")
+{
+    const TemporaryDirectory directory("flotsam_refused");
+    const auto out = directory.path() / "out";
+    (void)ran(kRaft, {"duration=0.01"}, out);
+    const std::string before = directory.read("out/report.json");
+    REQUIRE_FALSE(before.empty());
+    CHECK_FALSE(refusal([&] { (void)ran(kRaft, {"bodies.raft.position=[3,3]"}, out); }).empty());
+    CHECK(directory.read("out/report.json") == before);
+    std::filesystem::create_directories(directory.path() / "mine");
+    directory.write("mine/letter.txt", "dear");
+    CHECK_FALSE(refusal([&] { (void)ran(kRaft, {"duration=0.01"}, directory.path() / "mine"); }).empty());
+    CHECK(directory.read("mine/letter.txt") == "dear");
+}
+
+TEST_CASE("a report is JSON whatever is in it", "[scene]")
+{
+    RunReport report;
+    report.bodies.resize(1);
+    report.bodies[0].mass = std::nan("");
+    report.bodies[0].velocity = Vec3d::Constant(std::numeric_limits<double>::infinity());
+    report.failure = "came apart";
+    const auto json = nlohmann::json::parse(report_as_json(report));
+    CHECK(json["bodies"][0]["mass"].is_null());
+    CHECK(json["bodies"][0]["draft"].is_null());
+    CHECK(json["failure"] == "came apart");
+}
