@@ -2,6 +2,10 @@
 
 #include "flotsam/core/contracts.hpp"
 
+#if defined(FLOTSAM_PLAIN_THREADS)
+#include "core/plain_threads.hpp"
+#endif
+
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -11,10 +15,35 @@
 
 namespace flotsam {
 
+namespace {
+
+class TbbArena {
+  public:
+    explicit TbbArena(int threads) : arena_(threads) {}
+    void run(std::size_t chunks, FunctionRef<void(std::size_t)> body)
+    {
+        arena_.execute([&] {
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks),
+                              [&](const tbb::blocked_range<std::size_t>& range) {
+                                  for (std::size_t chunk = range.begin(); chunk < range.end(); ++chunk) body(chunk);
+                              });
+        });
+    }
+
+  private:
+    tbb::task_arena arena_;
+};
+
+} // namespace
+
 struct Workers::Arena {
     int threads;
-    tbb::task_arena tbb;
-    explicit Arena(int count) : threads(count), tbb(count) {}
+#if defined(FLOTSAM_PLAIN_THREADS)
+    PlainThreads team;
+#else
+    TbbArena team;
+#endif
+    explicit Arena(int count) : threads(count), team(count) {}
 };
 
 Workers::Workers(int threads)
@@ -41,12 +70,7 @@ void Workers::for_chunks(std::size_t items, FunctionRef<void(std::size_t, std::s
         for (std::size_t chunk = 0; chunk < chunks; ++chunk) run(chunk);
         return;
     }
-    arena_->tbb.execute([&] {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              for (std::size_t chunk = range.begin(); chunk < range.end(); ++chunk) run(chunk);
-                          });
-    });
+    arena_->team.run(chunks, run);
 }
 
 } // namespace flotsam
