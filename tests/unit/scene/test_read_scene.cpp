@@ -186,7 +186,7 @@ TEST_CASE("settings out of their range are refused", "[scene]")
     CHECK_FALSE(refusal_of(kRaft, {"probes.0.name=raft"}).empty());
 }
 
-TEST_CASE("--set changes one value before anything is checked", "[scene]")
+TEST_CASE("a value given with --set is changed before anything is checked", "[scene]")
 {
     CHECK(parsed(kCrate, {"bodies.0.density=300"}).bodies[0].density == 300.0);
     CHECK(parsed(kCrate, {"bodies[0].density=300"}).bodies[0].density == 300.0);
