@@ -109,7 +109,8 @@ TriangleMesh sphere_mesh(double radius, double max_edge)
     };
     project();
     while (mesh.triangles.size() < 320 || edge_range(mesh)[1] > max_edge) {
-        mesh = refined(std::move(mesh), 0.99 * edge_range(mesh)[0]); // every edge is split, once
+        const double below_shortest = 0.99 * edge_range(mesh)[0];
+        mesh = refined(std::move(mesh), below_shortest); // every edge is split, once
         project();
     }
     const double exact = 4.0 / 3.0 * kPi * radius * radius * radius;
