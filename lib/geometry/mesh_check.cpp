@@ -2,9 +2,9 @@
 
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/geometry/mass_properties.hpp"
+#include "geometry/mesh_connectivity.hpp"
 #include "mesh_crossing.hpp"
 #include "mesh_repair.hpp"
-#include "geometry/mesh_connectivity.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -16,8 +16,8 @@ struct TriangleAdjacency {
         bool faces_same = true; ///< walks the shared edge the other way round, as it should
     };
     std::vector<std::array<Neighbour, 3>> neighbours; ///< across the edge from corner k to corner k + 1
-    std::vector<VertexPair> open_edges;                 ///< of one triangle
-    std::vector<VertexPair> crowded_edges;              ///< of more than two; they link no triangles
+    std::vector<VertexPair> open_edges;               ///< of one triangle
+    std::vector<VertexPair> crowded_edges;            ///< of more than two; they link no triangles
 };
 
 /// An edge with more than two triangles is no trouble where parts of the file only touch each other: if each part has
@@ -26,10 +26,10 @@ struct TriangleAdjacency {
 
 /// Triangles that hang together across edges.
 struct ConnectedParts {
-    std::vector<std::vector<int>> triangles; ///< of each part, rising; parts by their first triangle
-    std::vector<char> is_flipped;            ///< of each triangle, to face as the first one of its part
-    std::vector<char> is_closed;             ///< of each part
-    std::optional<VertexPair> not_orientable;  ///< an edge whose two triangles cannot agree
+    std::vector<std::vector<int>> triangles;  ///< of each part, rising; parts by their first triangle
+    std::vector<char> is_flipped;             ///< of each triangle, to face as the first one of its part
+    std::vector<char> is_closed;              ///< of each part
+    std::optional<VertexPair> not_orientable; ///< an edge whose two triangles cannot agree
 };
 
 [[nodiscard]] ConnectedParts connected_parts(const TriangleMesh& mesh, const TriangleAdjacency& topology);

@@ -7,8 +7,8 @@
 namespace flotsam {
 namespace {
 
-/// Calls visit(first, last) for the ranges of lists.order that hold the points of the 3 x 3 x 3 cells around p; the three
-/// cells of a row along x are one range.
+/// Calls visit(first, last) for the ranges of lists.order that hold the points of the 3 x 3 x 3 cells around p; the
+/// three cells of a row along x are one range.
 template <class Visit>
 void for_candidate_ranges(const CellGrid& grid, const CellLists& lists, const Vec4& p, Visit&& visit)
 {

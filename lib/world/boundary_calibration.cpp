@@ -10,7 +10,7 @@ namespace flotsam {
 
 BoundaryCalibration boundary_calibration(int dimensions)
 {
-    BoundaryCalibration c = dimensions == 3 ? BoundaryCalibration{0.5, 1.0} : BoundaryCalibration{0.5, 1.0};
+    BoundaryCalibration c = dimensions == 3 ? BoundaryCalibration{0.95, 6.0} : BoundaryCalibration{0.95, 7.0};
     if (const char* e = std::getenv("FLOTSAM_INSET")) c.inset = std::atof(e);
     if (const char* e = std::getenv("FLOTSAM_VOLUME")) c.volume = std::atof(e);
     return c;

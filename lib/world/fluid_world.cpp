@@ -108,6 +108,8 @@ void FluidWorld::prepare(Bodies& bodies)
 
 double FluidWorld::allowed_time_step() const
 {
+    // Still tanks of 40 layers hold together at 0.5 and come apart at 0.6, in 2-D and 3-D, with either source.
+    constexpr double kPressureStep = 0.45;
     const FluidWorldSettings& s = impl_->settings;
     double dt = s.max_time_step;
     // Speed at the end of a step that gravity accelerates all the way: v + g dt.
@@ -115,6 +117,11 @@ double FluidWorld::allowed_time_step() const
     const double g = s.gravity.norm();
     const double v = impl_->max_speed;
     if (v > 0.0 || g > 0.0) dt = std::min(dt, 2.0 * reach / (v + std::sqrt(v * v + 4.0 * g * reach)));
+    // Pressure forces are explicit in the direction that they act in: a packing under pressure p answers sideways with
+    // frequencies of about sqrt(p / rho) / d, and comes apart where they are not resolved.
+    if (impl_->max_pressure > 0.0) {
+        dt = std::min(dt, kPressureStep * s.particle_spacing / std::sqrt(impl_->max_pressure / s.rest_density));
+    }
     if (s.kinematic_viscosity > 0.0) {
         const double h = impl_->support();
         dt = std::min(dt, 0.125 * h * h / (4.0 * s.kinematic_viscosity)); // Morris et al. 1997, smoothing length h / 2

@@ -66,7 +66,8 @@ struct FluidWorld::Impl {
     Workers workers;
     CubicSpline kernel;
     double time = 0.0;
-    double max_speed = 0.0; ///< of fluid and bodies [m/s]
+    double max_pressure = 0.0; ///< of the last step; before it the hydrostatic one [Pa]
+    double max_speed = 0.0;    ///< of fluid and bodies [m/s]
     bool prepared = false;
     std::vector<std::string> notes;
 

@@ -130,6 +130,13 @@ void FluidWorld::Impl::cut_and_place_fluid()
         note << cut_away << " of " << n + cut_away << " fluid particles lay inside walls or bodies and were cut away";
         notes.push_back(note.str());
     }
+    double low = 0.0, high = 0.0; // along gravity, for the first step's pressure
+    for (const Vec4& p : fluid.position) {
+        const double depth = settings.gravity.dot((p - fluid.position[0]).head<3>().cast<double>());
+        low = std::min(low, depth);
+        high = std::max(high, depth);
+    }
+    max_pressure = settings.rest_density * (high - low);
     seeds.clear();
     seeds.shrink_to_fit();
 }

@@ -198,6 +198,10 @@ void FluidWorld::Impl::advance(double dt, Bodies& port, StepReport& report)
             .ordered_sum<Sum3>(n, sum3_scratch,
                                [&](std::size_t i) { return Sum3{fluid.velocity[i].head<3>().cast<double>()}; })
             .value;
+    max_pressure = workers
+                       .ordered_sum<MaxOf>(n, max_scratch,
+                                           [&](std::size_t i) { return MaxOf{static_cast<double>(fluid.pressure[i])}; })
+                       .value;
     max_speed = report.max_speed;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
         max_speed = std::max(max_speed, states[k].predicted.linear.norm());

@@ -24,7 +24,7 @@ struct FluidWorldSettings {
     Vec3d gravity = Vec3d(0.0, 0.0, -9.81); ///< [m/s^2]
     double rest_density = 1000.0;           ///< [kg/m^3], > 0
     double kinematic_viscosity = 1e-6;      ///< [m^2/s], >= 0
-    double dissipation = 1.0;                ///< of velocity noise below the resolution, x d |dv|; 0: none, >= 0
+    double dissipation = 1.0;               ///< of velocity noise below the resolution, x d |dv|; 0: none, >= 0
     PressureSettings pressure;
     double max_time_step = 0.004; ///< [s], > 0
     double cfl = 0.4;             ///< of a spacing that the fastest particle may go in a step, in (0, 1]

@@ -51,7 +51,8 @@ void Viscosity::find_gradients(const ViscositySettings& settings, const FluidSta
             slope3.col(c) = Scalar(0.5) * volume * slope[static_cast<std::size_t>(c)].head<3>();
         }
         if (settings.dimensions == 2) shape3(1, 1) = 1;
-        // The shape is the identity in a full neighbourhood; where it is nearly singular (spray) there is no linear field.
+        // The shape is the identity in a full neighbourhood; where it is nearly singular (spray) there is no linear
+        // field.
         const bool full = shape3.determinant() > Scalar(0.05);
         if (full) slope3 = (slope3 * shape3.inverse()).eval();
         for (int c = 0; c < 3; ++c) {
@@ -65,8 +66,8 @@ void Viscosity::find_gradients(const ViscositySettings& settings, const FluidSta
 void Viscosity::add_between_particles(const ViscositySettings& settings, double dt, const FluidState& fluid,
                                       const Pairs& pairs, const Workers& workers, std::span<Vec4> velocity) const
 {
-    const Scalar factor = static_cast<Scalar>(2.0 * (settings.dimensions + 2) * dt * fluid.particle_mass /
-                                              settings.rest_density);
+    const Scalar factor =
+        static_cast<Scalar>(2.0 * (settings.dimensions + 2) * dt * fluid.particle_mass / settings.rest_density);
     const Scalar nu = static_cast<Scalar>(settings.kinematic_viscosity);
     const Scalar width = static_cast<Scalar>(settings.dissipation * settings.spacing);
     const Scalar soft = softening_sq(settings);
@@ -100,8 +101,7 @@ void Viscosity::add_at_boundaries(const ViscositySettings& settings, double dt, 
                                   const BoundaryState& boundary, const Pairs& pairs, std::span<const Vec3d> centers,
                                   const Workers& workers, std::span<Vec4> velocity, std::span<Wrench> owner_impulses)
 {
-    const Scalar factor =
-        static_cast<Scalar>(2.0 * (settings.dimensions + 2) * settings.kinematic_viscosity * dt);
+    const Scalar factor = static_cast<Scalar>(2.0 * (settings.dimensions + 2) * settings.kinematic_viscosity * dt);
     const Scalar soft = softening_sq(settings);
     const std::size_t chunks = Workers::chunk_count(fluid.size());
     reactions_.resize(std::max(reactions_.size(), chunks));
@@ -120,8 +120,8 @@ void Viscosity::add_at_boundaries(const ViscositySettings& settings, double dt, 
                 const std::int32_t owner = boundary.owner[b];
                 if (reactions.empty() || reactions.back().owner != owner) reactions.push_back({owner, {}});
                 const Vec3d impulse = -fluid.particle_mass * part.head<3>().cast<double>();
-                const Vec3d arm = boundary.position[b].head<3>().cast<double>() -
-                                  centers[static_cast<std::size_t>(owner)];
+                const Vec3d arm =
+                    boundary.position[b].head<3>().cast<double>() - centers[static_cast<std::size_t>(owner)];
                 reactions.back().impulse += {impulse, arm.cross(impulse)};
             }
             velocity[i] += change;
