@@ -97,8 +97,10 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
     Vec3d b = to.head<3>().cast<double>();
     Vec3d v = velocity.head<3>().cast<double>();
     bool stopped = false;
+    Vec3d spin = b.cross(v); // angular momentum per mass that no surface has been given yet
     const auto give = [&](std::size_t k, const Vec3d& at, const Vec3d& impulse) {
         out.reactions.push_back({k, {impulse, (at - motion[k].before.position).cross(impulse)}});
+        spin -= at.cross(impulse) / particle_mass;
     };
     for (int bounce = 0; bounce <= kMaxBounces; ++bounce) {
         const auto hit = first_hit(a, b, motion);
@@ -127,6 +129,8 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
     ++out.report.stopped;
     to.head<3>() = b.cast<Scalar>();
     velocity.head<3>() = v.cast<Scalar>();
+    // Putting the particle back moved it off the straight line: the surface takes the difference, so that none is lost.
+    if (!out.reactions.empty()) out.reactions.back().impulse.angular += particle_mass * (spin - b.cross(v));
 }
 
 } // namespace flotsam

@@ -22,8 +22,8 @@ struct Outcome {
 void append(std::vector<btScalar>& to, const btRigidBody& body)
 {
     const btTransform& t = body.getWorldTransform();
-    const btVector3 rows[] = {t.getOrigin(),       t.getBasis()[0],          t.getBasis()[1],
-                              t.getBasis()[2],     body.getLinearVelocity(), body.getAngularVelocity()};
+    const btVector3 rows[] = {t.getOrigin(),   t.getBasis()[0],          t.getBasis()[1],
+                              t.getBasis()[2], body.getLinearVelocity(), body.getAngularVelocity()};
     for (const btVector3& row : rows) to.insert(to.end(), {row.x(), row.y(), row.z()});
 }
 

@@ -84,9 +84,10 @@ TEST_CASE("an ordered sum over nothing is zero", "[core]")
 TEST_CASE("a loop hands its exception to the caller", "[core]")
 {
     const Workers workers(GENERATE(1, 2));
-    CHECK_THROWS_AS(workers.for_each(1000, [](std::size_t i) {
-        if (i == 700) throw std::runtime_error("item 700");
-    }),
+    CHECK_THROWS_AS(workers.for_each(1000,
+                                     [](std::size_t i) {
+                                         if (i == 700) throw std::runtime_error("item 700");
+                                     }),
                     std::runtime_error);
 }
 
