@@ -27,6 +27,7 @@ GuardReport WallGuard::stop(std::span<const Vec4> from, std::span<Vec4> to, std:
         Stopped& out = chunks_[chunk];
         out.report = {};
         out.reactions.clear();
+        if (out.reactions.capacity() == 0) out.reactions.reserve(64); // few particles of a chunk are stopped at once
         for (std::size_t i = begin; i < end; ++i) {
             if (!to[i].allFinite()) continue; // counted by the step as physics in trouble
             if (!may_hit(from[i].head<3>().cast<double>(), to[i].head<3>().cast<double>(), motion)) continue;
