@@ -129,9 +129,9 @@ void check_throw(const Throw& thrown, int thrown_at_least)
 } // namespace
 
 TEST_CASE("no particle is thrown out of a container", "[walls][property]")
-{ // 1000 throws: 4 containers, 5 directions, 50 particles
+{ // 4 containers, 3 directions, 50 particles
     const int shape = GENERATE(range(0, 4));
-    const int seed = GENERATE(range(0, 5));
+    const int seed = GENERATE(range(0, 3));
     Dice dice(static_cast<unsigned>(100 * shape + seed));
     const Aabb box{Vec3d(-0.3, -0.25, -0.2), Vec3d(0.3, 0.25, 0.2)};
     Throw thrown;
@@ -179,7 +179,7 @@ TEST_CASE("no particle is thrown into a corner of a container and out of it", "[
 TEST_CASE("no particle is thrown through a wall thinner than a particle", "[walls][property]")
 { // in a container: a sheet, a plate of 0.2 d and a mesh plate of 0.01 d keep the left from the right
     const int wall = GENERATE(range(0, 3));
-    const int seed = GENERATE(range(0, 10));
+    const int seed = GENERATE(range(0, 4));
     Dice dice(static_cast<unsigned>(100 * wall + seed));
     const double half = wall == 1 ? 0.1 * kSpacing : 0.005 * kSpacing;
     Throw thrown;
@@ -213,7 +213,7 @@ TEST_CASE("no particle is thrown through a wall thinner than a particle", "[wall
 TEST_CASE("no particle is thrown into a solid obstacle", "[walls][property]")
 {
     const int shape = GENERATE(range(0, 3));
-    const int seed = GENERATE(range(0, 5));
+    const int seed = GENERATE(range(0, 2));
     Dice dice(static_cast<unsigned>(100 * shape + seed));
     const Aabb room{Vec3d(-0.4, -0.4, -0.4), Vec3d(0.4, 0.4, 0.4)};
     const TriangleMesh mesh = shape == 0   ? box_mesh({Vec3d(-0.2, -0.15, -0.1), Vec3d(0.2, 0.15, 0.1)})
