@@ -97,7 +97,7 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
     const Vec3d a = from.head<3>().cast<double>();
     Vec3d b = to.head<3>().cast<double>();
     Vec3d v = velocity.head<3>().cast<double>();
-    bool stopped = false;
+    std::optional<std::size_t> stopped_by;
     Vec3d spin = b.cross(v); // angular momentum per mass that no surface has been given yet
     const auto give = [&](std::size_t k, const Vec3d& at, const Vec3d& impulse) {
         out.reactions.push_back({k, {impulse, (at - motion[k].before.position).cross(impulse)}});
@@ -106,7 +106,7 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
     for (int bounce = 0; bounce <= kMaxBounces; ++bounce) {
         const auto hit = first_hit(a, b, motion);
         if (!hit) break;
-        stopped = true;
+        stopped_by = hit->surface;
         const GuardedMotion& solid = motion[hit->surface];
         const Vec3d at = a + hit->fraction * (b - a);
         const Vec3d wall_velocity = solid.twist.at(at - solid.before.position);
@@ -126,12 +126,12 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
             if (first_hit(a, b, motion)) ++out.report.leaked;
         }
     }
-    if (!stopped) return;
+    if (!stopped_by) return;
     ++out.report.stopped;
     to.head<3>() = b.cast<Scalar>();
     velocity.head<3>() = v.cast<Scalar>();
     // Putting the particle back moved it off the straight line: the surface takes the difference, so that none is lost.
-    if (!out.reactions.empty()) out.reactions.back().impulse.angular += particle_mass * (spin - b.cross(v));
+    out.reactions.push_back({*stopped_by, {Vec3d::Zero(), particle_mass * (spin - b.cross(v))}});
 }
 
 } // namespace flotsam

@@ -243,7 +243,7 @@ TEST_CASE("the guard alone gives the walls what it takes from the particles", "[
     WallGuard guard;
     guard.build({{&ring, true, false}, {&plate, true, true}}, kSpacing, workers);
     Dice dice(7);
-    std::vector<Vec4> from, to, velocity, before;
+    std::vector<Vec4> from, to, velocity, before, straight;
     std::vector<GuardedMotion> motion(2);
     const double dt = 0.01, mass = 0.008;
     while (from.size() < 1000) {
@@ -258,16 +258,20 @@ TEST_CASE("the guard alone gives the walls what it takes from the particles", "[
         to.push_back(start + static_cast<Scalar>(dt) * speed);
     }
     before = velocity;
+    straight = to;
     std::vector<Wrench> impulses(2);
     const GuardReport report = guard.stop(from, to, velocity, motion, mass, workers, impulses);
     CHECK(report.stopped > 500);
     CHECK(report.leaked == 0);
     Vec3d lost = Vec3d::Zero();
+    Vec3d turning_lost = Vec3d::Zero();
     double given = 0.0;
     int out = 0, through = 0; // of the ring, the plate that cuts it in half
     for (std::size_t i = 0; i < from.size(); ++i) {
         const Vec3d part = mass * (before[i] - velocity[i]).head<3>().cast<double>();
         lost += part;
+        turning_lost += mass * (straight[i].head<3>().cross(before[i].head<3>()).cast<double>() -
+                                to[i].head<3>().cross(velocity[i].head<3>()).cast<double>());
         given += part.norm();
         out += ring.inside(to[i].head<3>().cast<double>()) ? 0 : 1;
         through += from[i].x() * to[i].x() > 0 ? 0 : 1;
@@ -276,5 +280,6 @@ TEST_CASE("the guard alone gives the walls what it takes from the particles", "[
     CHECK(out == 0);
     CHECK(impulses[1].linear.norm() > 0.0); // some hit the plate
     CHECK((lost - impulses[0].linear - impulses[1].linear).norm() < 1e-6 * given);
+    CHECK((turning_lost - impulses[0].angular - impulses[1].angular).norm() < 1e-6 * given); // arms below a metre
     CHECK(through == 0);
 }

@@ -186,10 +186,12 @@ TEST_CASE("single particles stay where the caller wants them, however close", "[
     NoBodies none;
     fluid.prepare(none);
     REQUIRE(fluid.fluid().size() == 25);
+    double moved = 0.0;
     for (std::size_t i = 0; i < 25; ++i) {
         const Vec3d at = fluid.fluid().position[i].head<3>().cast<double>();
-        CHECK((at - points[fluid.fluid().id[i]]).norm() < 1e-6); // rounded to float
+        moved = std::max(moved, (at - points[fluid.fluid().id[i]]).norm());
     }
+    CHECK(moved < 1e-6); // rounded to float
 }
 
 TEST_CASE("a still tank has the pressure, level and weight of its water", "[world]")
