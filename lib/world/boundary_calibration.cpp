@@ -11,9 +11,9 @@ namespace flotsam {
 
 BoundaryCalibration boundary_calibration(int dimensions)
 {
-    // 3-D: sphere and cube of 16 d under water 0.999 and 1.003 of the displaced weight, level -0.10 d in a tank 26 d wide.
-    // 2-D: disc and square of 12 d 1.01 and 1.00, level -0.11 d. Deeper samples (0.95 d) put the pressure of the layer at a
-    // wall right (1.03 instead of 1.42 of hydrostatic) but hold bodies up and down like a granular packing.
+    // 3-D: sphere and cube of 16 d under water 0.999 and 1.003 of the displaced weight, level -0.10 d in a tank 26 d
+    // wide. 2-D: disc and square of 12 d 1.01 and 1.00, level -0.11 d. Deeper samples (0.95 d) put the pressure of the
+    // layer at a wall right (1.03 instead of 1.42 of hydrostatic) but hold bodies up and down like a granular packing.
     return dimensions == 3 ? BoundaryCalibration{0.6, 1.1} : BoundaryCalibration{0.6, 1.05};
 }
 

@@ -145,7 +145,7 @@ void FluidWorld::Impl::cut_and_place_fluid()
 void FluidWorld::Impl::sample_surfaces()
 {
     SurfaceSampleSettings sampling;
-    sampling.spacing = spacing();
+    sampling.spacing = 0.7 * spacing();
     sampling.inset = boundary_calibration(settings.dimensions).inset * spacing();
     sampling.dimensions = settings.dimensions;
     const auto add = [&](const SurfaceSamples& samples, std::size_t owner, const std::string& name) {

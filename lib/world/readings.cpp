@@ -30,10 +30,10 @@ void visit_around(const CellGrid& grid, const CellLists& cells, const Vec3d& p, 
 
 } // namespace
 
-/// Normal stress of the forces between particles around i (their virial) on a face across gravity, which is what a gauge
-/// feels:  P_i = rho0 m / 2 sum_j (p_i / rho_i^2 + p_j / rho_j^2) (-(x_ij . e) (grad W_ij . e)),  e along gravity; without
-/// gravity the mean over all directions. The p_i themselves are multipliers, a few per cent off it in a settled packing
-/// and half as much again in the layer at a wall, which carries all of the wall's force.
+/// Normal stress of the forces between particles around i (their virial) on a face across gravity, which is what a
+/// gauge feels:  P_i = rho0 m / 2 sum_j (p_i / rho_i^2 + p_j / rho_j^2) (-(x_ij . e) (grad W_ij . e)),  e along
+/// gravity; without gravity the mean over all directions. The p_i themselves are multipliers, a few per cent off it in
+/// a settled packing and half as much again in the layer at a wall, which carries all of the wall's force.
 /// **Source:** Irving & Kirkwood 1950 for the virial stress.
 double FluidWorld::Impl::gauge_pressure(std::size_t i) const
 {

@@ -20,8 +20,8 @@ class SilentObserver final : public RunObserver {
 /// Runs a scene given as text, as the program does, without writing results.
 inline RunReport run_text(const std::string& text)
 {
-    const auto file = std::filesystem::temp_directory_path() /
-                      ("flotsam_scene_" + std::to_string(::getpid()) + ".json");
+    const auto file =
+        std::filesystem::temp_directory_path() / ("flotsam_scene_" + std::to_string(::getpid()) + ".json");
     std::ofstream(file) << text;
     const SceneFile scene = read_scene(file);
     std::filesystem::remove(file);

@@ -17,13 +17,13 @@ RunReport float_body(int dimensions, const std::string& shape, const std::string
     std::ostringstream scene;
     const bool plane = dimensions == 2;
     const double x = plane ? 1.2 : 0.56, y = 0.6, z = plane ? 0.6 : 0.32;
-    scene << R"({"flotsam": 1, "dimensions": )" << dimensions << R"(, "particle_spacing": 0.02, "duration": )" << duration
-          << R"(, "time_step": {"max": 0.004, "cfl": 0.4}, "fluids": [{"blocks": [{"min": [0, )" << (plane ? 0 : 0)
-          << R"(, 0], "max": [)" << x << ", " << (plane ? 0.0 : y) << ", " << z
+    scene << R"({"flotsam": 1, "dimensions": )" << dimensions << R"(, "particle_spacing": 0.02, "duration": )"
+          << duration << R"(, "time_step": {"max": 0.004, "cfl": 0.4}, "fluids": [{"blocks": [{"min": [0, )"
+          << (plane ? 0 : 0) << R"(, 0], "max": [)" << x << ", " << (plane ? 0.0 : y) << ", " << z
           << R"(]}]}], "walls": [{"box": {"min": [0, )" << (plane ? -0.5 : 0.0) << R"(, 0], "max": [)" << x << ", "
           << (plane ? 0.5 : y) << R"(, 1], "open": ["+z"]}}], "bodies": [{"name": "body", "shape": )" << shape
-          << R"(, "density": )" << 1000.0 * ratio << more << R"(, "position": [)" << x / 2 << ", " << (plane ? 0.0 : y / 2)
-          << ", " << z << "]}]}";
+          << R"(, "density": )" << 1000.0 * ratio << more << R"(, "position": [)" << x / 2 << ", "
+          << (plane ? 0.0 : y / 2) << ", " << z << "]}]}";
     return run_text(scene.str());
 }
 
