@@ -7,11 +7,13 @@
 #endif
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace flotsam {
 
@@ -19,7 +21,13 @@ namespace {
 
 class TbbArena {
   public:
-    explicit TbbArena(int threads) : arena_(threads) {}
+    explicit TbbArena(int threads)
+    {
+        if (threads > tbb::info::default_concurrency()) {
+            more_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+        }
+        arena_.initialize(threads);
+    }
     void run(std::size_t chunks, FunctionRef<void(std::size_t)> body)
     {
         arena_.execute([&] {
@@ -31,6 +39,8 @@ class TbbArena {
     }
 
   private:
+    /// TBB starts no more threads than the machine has cores, and complains on stderr, unless it is told otherwise.
+    std::optional<tbb::global_control> more_;
     tbb::task_arena arena_;
 };
 

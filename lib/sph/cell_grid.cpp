@@ -40,6 +40,7 @@ void CellLists::build(const CellGrid& grid, std::span<const Vec4> points, const 
     const std::size_t count = points.size();
     cell.resize(count);
     order.resize(count);
+    if (start.capacity() <= grid.size()) start.reserve(2 * grid.size() + 1); // a splash widens the grid step by step
     start.assign(grid.size() + 1, 0);
     workers.for_each(count, [&](std::size_t i) { cell[i] = grid.index_of(grid.cell_of(points[i])); });
     for (std::size_t i = 0; i < count; ++i) ++start[cell[i] + 1];

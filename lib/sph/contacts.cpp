@@ -14,7 +14,7 @@ void ContactBuilder::build(const Pairs& boundary_pairs, const BoundaryState& bou
     workers.for_chunks(count, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         std::vector<Row>& rows = rows_[chunk];
         rows.clear();
-        if (rows.capacity() == 0) rows.reserve(Workers::kChunk);
+        if (rows.capacity() == 0) rows.reserve(2 * Workers::kChunk); // two owners for each particle
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t first = rows.size();
             Vec4 sum = Vec4::Zero();

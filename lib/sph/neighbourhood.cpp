@@ -58,8 +58,9 @@ void NeighbourSearch::find_indices(Scalar support, const CellGrid& grid, const C
     });
     for (std::size_t i = 0; i < a.size(); ++i) pairs.start[i + 1] += pairs.start[i];
     const std::size_t total = pairs.start[a.size()];
-    if (pairs.index.capacity() < total) pairs.index.reserve(total + total / 4);
-    if (pairs.gradient.capacity() < total) pairs.gradient.reserve(total + total / 4);
+    // Twice as many, so that spreading water soon needs no more; pages that are never written cost no memory.
+    if (pairs.index.capacity() < total) pairs.index.reserve(2 * total);
+    if (pairs.gradient.capacity() < total) pairs.gradient.reserve(2 * total);
     pairs.index.resize(total);
     workers.for_chunks(a.size(), [&](std::size_t chunk, std::size_t begin, std::size_t) {
         std::copy_n(found_[chunk].begin(), counts_[chunk], pairs.index.begin() + pairs.start[begin]);

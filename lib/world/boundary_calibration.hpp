@@ -17,10 +17,12 @@ struct BoundaryCalibration {
 /// bodies held under water (tests/validation); no other constant depends on the scene.
 [[nodiscard]] BoundaryCalibration boundary_calibration(int dimensions);
 
-/// V_b of each sample [m^3]: calibration.volume / sum of the kernel over the samples of the same surface (itself
-/// included).
-/// **Source:** Akinci et al. 2012, eq. 4. **Differs:** by the calibrated factor.
-[[nodiscard]] std::vector<double> sample_volumes(std::span<const Vec3d> positions, double particle_spacing,
-                                                 int dimensions);
+/// V_b of each sample [m^3]: factor / sum of the kernel over the samples of the same surface (itself included).
+/// The factor is the calibrated one at the calibrated depth. Samples in the middle of a thin solid lie less deep;
+/// theirs is such that water half a spacing in front of the surface sees the same density: the kernel's integral over a
+/// plane at half a spacing plus the depth, times the factor, is constant.
+/// **Source:** Akinci et al. 2012, eq. 4. **Differs:** by the factor.
+[[nodiscard]] std::vector<double> sample_volumes(std::span<const Vec3d> positions, std::span<const double> depths,
+                                                 double particle_spacing, int dimensions);
 
 } // namespace flotsam

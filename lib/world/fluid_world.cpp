@@ -23,6 +23,7 @@ const FluidWorldSettings& checked(const FluidWorldSettings& s)
     require(positive(s.rest_density), "rest_density must be > 0 [kg/m^3]", s.rest_density);
     require(s.kinematic_viscosity >= 0.0 && std::isfinite(s.kinematic_viscosity),
             "kinematic_viscosity must be >= 0 [m^2/s]", s.kinematic_viscosity);
+    require(s.dissipation >= 0.0 && std::isfinite(s.dissipation), "dissipation must be >= 0", s.dissipation);
     require(positive(s.max_time_step), "max_time_step must be > 0 [s]", s.max_time_step);
     require(s.cfl > 0.0 && s.cfl <= 1.0, "cfl must be in (0, 1]", s.cfl);
     require(positive(s.pressure.tolerance), "pressure.tolerance must be > 0", s.pressure.tolerance);
@@ -72,6 +73,7 @@ void FluidWorld::add_block(const Aabb& block, const Vec3d& velocity)
 void FluidWorld::add_fluid_mesh(const TriangleMesh& closed, const Vec3d& velocity)
 {
     require(!impl_->prepared, "water must be added before the first step");
+    require(velocity.allFinite(), "the velocity of a mesh's water must be finite [m/s]");
     const auto query = std::make_shared<SurfaceQuery>(closed);
     const auto covers = [query](const Vec3d& p) { return query->bounds().contains(p) && query->inside(p); };
     impl_->seed_where_dry({fill_mesh(*query, impl_->spacing(), impl_->settings.dimensions), velocity, true, covers});
@@ -81,6 +83,7 @@ void FluidWorld::add_particles(std::span<const Vec3d> positions, const Vec3d& ve
 {
     require(!impl_->prepared, "water must be added before the first step");
     for (const Vec3d& p : positions) require(p.allFinite(), "particle positions must be finite [m]");
+    require(velocity.allFinite(), "the velocity of particles must be finite [m/s]");
     impl_->seeds.push_back({{positions.begin(), positions.end()}, velocity, false, {}});
 }
 

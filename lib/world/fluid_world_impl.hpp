@@ -117,6 +117,8 @@ struct FluidWorld::Impl {
     [[nodiscard]] double spacing() const { return settings.particle_spacing; }
     [[nodiscard]] double support() const { return 2.0 * settings.particle_spacing; }
 
+    [[nodiscard]] double gauge_pressure(std::size_t i) const;
+
     // prepare.cpp
     void prepare(Bodies& port);
     void choose_wall_sides();

@@ -132,7 +132,8 @@ void FluidWorld::Impl::cut_and_place_fluid()
     }
     double low = 0.0, high = 0.0; // along gravity, for the first step's pressure
     for (const Vec4& p : fluid.position) {
-        const double depth = settings.gravity.dot((p - fluid.position[0]).head<3>().cast<double>());
+        const Vec3 away = (p - fluid.position[0]).head<3>();
+        const double depth = settings.gravity.dot(away.cast<double>());
         low = std::min(low, depth);
         high = std::max(high, depth);
     }
@@ -148,7 +149,8 @@ void FluidWorld::Impl::sample_surfaces()
     sampling.inset = boundary_calibration(settings.dimensions).inset * spacing();
     sampling.dimensions = settings.dimensions;
     const auto add = [&](const SurfaceSamples& samples, std::size_t owner, const std::string& name) {
-        const std::vector<double> volumes = sample_volumes(samples.positions, spacing(), settings.dimensions);
+        const std::vector<double> volumes =
+            sample_volumes(samples.positions, samples.depth, spacing(), settings.dimensions);
         for (std::size_t b = 0; b < volumes.size(); ++b) {
             Vec4 position = Vec4::Zero();
             position.head<3>() = samples.positions[b].cast<Scalar>();

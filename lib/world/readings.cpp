@@ -1,5 +1,7 @@
 #include "world/fluid_world_impl.hpp"
 
+#include "flotsam/core/contracts.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -7,16 +9,16 @@
 namespace flotsam {
 namespace {
 
-/// Calls visit(j) for the particles in the 27 cells around p as the grid of the last step has them. Particles have
-/// moved by less than a spacing since then.
+/// Calls visit(j) for the particles in the cells within `reach` cells of the one of p, as the grid of the last step has
+/// them. Particles have moved by less than a spacing since then.
 template <class Visit>
-void visit_around(const CellGrid& grid, const CellLists& cells, const Vec3d& p, Visit&& visit)
+void visit_around(const CellGrid& grid, const CellLists& cells, const Vec3d& p, int reach, Visit&& visit)
 {
     if (cells.start.empty()) return;
     const Vec4 place(static_cast<Scalar>(p.x()), static_cast<Scalar>(p.y()), static_cast<Scalar>(p.z()), Scalar(0));
     const Eigen::Vector3i home = grid.cell_of(place);
-    const Eigen::Vector3i low = (home.array() - 1).max(0);
-    const Eigen::Vector3i high = (home.array() + 1).min(grid.cells.array() - 1);
+    const Eigen::Vector3i low = (home.array() - reach).max(0);
+    const Eigen::Vector3i high = (home.array() + reach).min(grid.cells.array() - 1);
     for (int z = low.z(); z <= high.z(); ++z) {
         for (int y = low.y(); y <= high.y(); ++y) {
             const std::uint32_t first = cells.start[grid.index_of({low.x(), y, z})];
@@ -28,21 +30,54 @@ void visit_around(const CellGrid& grid, const CellLists& cells, const Vec3d& p, 
 
 } // namespace
 
+/// Normal stress of the forces between particles around i (their virial) on a face across gravity, which is what a gauge
+/// feels:  P_i = rho0 m / 2 sum_j (p_i / rho_i^2 + p_j / rho_j^2) (-(x_ij . e) (grad W_ij . e)),  e along gravity; without
+/// gravity the mean over all directions. The p_i themselves are multipliers, a few per cent off it in a settled packing
+/// and half as much again in the layer at a wall, which carries all of the wall's force.
+/// **Source:** Irving & Kirkwood 1950 for the virial stress.
+double FluidWorld::Impl::gauge_pressure(std::size_t i) const
+{
+    const auto share = [&](std::size_t k) {
+        const double rho = static_cast<double>(fluid.density[k]);
+        return static_cast<double>(fluid.pressure[k]) / (rho * rho);
+    };
+    const double g = settings.gravity.norm();
+    double sum = 0.0;
+    for (std::uint32_t k = fluid_pairs.start[i]; k < fluid_pairs.start[i + 1]; ++k) {
+        const std::uint32_t j = fluid_pairs.index[k];
+        const Vec3d gradient = fluid_pairs.gradient[k].head<3>().cast<double>();
+        const Vec3d x = (fluid.position[i] - fluid.position[j]).head<3>().cast<double>();
+        const double push = g > 0.0 ? -x.dot(settings.gravity) * gradient.dot(settings.gravity) / (g * g)
+                                    : -x.dot(gradient) / settings.dimensions;
+        sum += (share(i) + share(j)) * push;
+    }
+    return 0.5 * settings.rest_density * fluid.particle_mass * sum;
+}
+
 double FluidWorld::pressure_at(const Vec3d& point) const
 {
-    const FluidState& fluid = impl_->fluid;
-    double weights = 0.0, sum = 0.0;
-    visit_around(impl_->grid, impl_->fluid_cells, point, [&](std::uint32_t j) {
-        const Vec3d at = fluid.position[j].head<3>().cast<double>();
-        const double w = static_cast<double>(impl_->kernel.value(static_cast<Scalar>((point - at).norm())));
-        if (!(w > 0.0)) return;
-        const double p = static_cast<double>(fluid.pressure[j]);
-        const double here = p > 0.0 ? p + impl_->settings.rest_density * impl_->settings.gravity.dot(point - at) : 0.0;
-        weights += w;
-        sum += w * std::max(0.0, here);
-    });
-    const double filled = weights * fluid.particle_mass / impl_->settings.rest_density;
-    return filled > 0.02 ? sum / weights : 0.0;
+    require(point.allFinite(), "a point must be finite [m]");
+    const Impl& world = *impl_;
+    if (world.fluid_pairs.rows() != world.fluid.size()) return 0.0; // before the first step
+    // Particles that touch no solid first, from a wider neighbourhood if there are few; then any.
+    for (const auto& [reach, free_only] : {std::pair{1, true}, std::pair{2, true}, std::pair{1, false}}) {
+        const CubicSpline kernel(reach * world.support(), world.settings.dimensions);
+        double weights = 0.0, sum = 0.0;
+        visit_around(world.grid, world.fluid_cells, point, reach, [&](std::uint32_t j) {
+            if (free_only && world.boundary_pairs.start[j] != world.boundary_pairs.start[j + 1]) return;
+            const Vec3d at = world.fluid.position[j].head<3>().cast<double>();
+            const double w = static_cast<double>(kernel.value(static_cast<Scalar>((point - at).norm())));
+            if (!(w > 0.0)) return;
+            const double p = world.gauge_pressure(j);
+            const double here =
+                p > 0.0 ? p + world.settings.rest_density * world.settings.gravity.dot(point - at) : 0.0;
+            weights += w;
+            sum += w * std::max(0.0, here);
+        });
+        // Volume fraction of the kernel that is filled: a tenth is enough to go by.
+        if (weights * world.fluid.particle_mass / world.settings.rest_density > 0.1) return sum / weights;
+    }
+    return 0.0;
 }
 
 std::optional<double> FluidWorld::level_at(double x, double y) const

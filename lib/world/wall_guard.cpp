@@ -27,6 +27,7 @@ GuardReport WallGuard::stop(std::span<const Vec4> from, std::span<Vec4> to, std:
         Stopped& out = chunks_[chunk];
         out.report = {};
         out.reactions.clear();
+        if (out.reactions.capacity() == 0) out.reactions.reserve(64); // few particles of a chunk are stopped at once
         for (std::size_t i = begin; i < end; ++i) {
             if (!to[i].allFinite()) continue; // counted by the step as physics in trouble
             if (!may_hit(from[i].head<3>().cast<double>(), to[i].head<3>().cast<double>(), motion)) continue;
@@ -96,14 +97,16 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
     const Vec3d a = from.head<3>().cast<double>();
     Vec3d b = to.head<3>().cast<double>();
     Vec3d v = velocity.head<3>().cast<double>();
-    bool stopped = false;
+    std::optional<std::size_t> stopped_by;
+    Vec3d spin = b.cross(v); // angular momentum per mass that no surface has been given yet
     const auto give = [&](std::size_t k, const Vec3d& at, const Vec3d& impulse) {
         out.reactions.push_back({k, {impulse, (at - motion[k].before.position).cross(impulse)}});
+        spin -= at.cross(impulse) / particle_mass;
     };
     for (int bounce = 0; bounce <= kMaxBounces; ++bounce) {
         const auto hit = first_hit(a, b, motion);
         if (!hit) break;
-        stopped = true;
+        stopped_by = hit->surface;
         const GuardedMotion& solid = motion[hit->surface];
         const Vec3d at = a + hit->fraction * (b - a);
         const Vec3d wall_velocity = solid.twist.at(at - solid.before.position);
@@ -123,10 +126,12 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
             if (first_hit(a, b, motion)) ++out.report.leaked;
         }
     }
-    if (!stopped) return;
+    if (!stopped_by) return;
     ++out.report.stopped;
     to.head<3>() = b.cast<Scalar>();
     velocity.head<3>() = v.cast<Scalar>();
+    // Putting the particle back moved it off the straight line: the surface takes the difference, so that none is lost.
+    out.reactions.push_back({*stopped_by, {Vec3d::Zero(), particle_mass * (spin - b.cross(v))}});
 }
 
 } // namespace flotsam

@@ -24,8 +24,8 @@ struct FluidWorldSettings {
     Vec3d gravity = Vec3d(0.0, 0.0, -9.81); ///< [m/s^2]
     double rest_density = 1000.0;           ///< [kg/m^3], > 0
     double kinematic_viscosity = 1e-6;      ///< [m^2/s], >= 0
-    double dissipation = 1.0;               ///< of velocity noise below the resolution, x d |dv|; 0: none, >= 0
-    PressureSettings pressure;
+    double dissipation = 2.0;               ///< of velocity noise below the resolution, x d |dv|; 0: none, >= 0
+    PressureSettings pressure{};
     double max_time_step = 0.004; ///< [s], > 0
     double cfl = 0.4;             ///< of a spacing that the fastest particle may go in a step, in (0, 1]
     int threads = 0;              ///< 0: all the machine has; changes no bit of the result
@@ -89,8 +89,8 @@ class FluidWorld {
     [[nodiscard]] Wrench fluid_wrench(int body) const;
     /// Force [N] that the fluid put on a wall, mean over the last step.
     [[nodiscard]] Vec3d wall_force(int wall) const;
-    /// Pressure [Pa] at a point: mean of the particles around it, each continued along the hydrostatic gradient to the
-    /// point; 0 where there is no fluid.
+    /// Pressure [Pa] at a point, of the forces between the particles around it, each continued along the hydrostatic
+    /// gradient to the point; 0 where there is no fluid.
     [[nodiscard]] double pressure_at(const Vec3d& point) const;
     /// Height [m] of the water's surface on the vertical line through (x, y): where the smoothed volume fraction falls
     /// through 1/2; nothing where the line meets no water.

@@ -108,6 +108,7 @@ void Viscosity::add_at_boundaries(const ViscositySettings& settings, double dt, 
     workers.for_chunks(fluid.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         std::vector<Reaction>& reactions = reactions_[chunk];
         reactions.clear();
+        if (reactions.capacity() == 0) reactions.reserve(Workers::kChunk); // a new one where the owner changes only
         for (std::size_t i = begin; i < end; ++i) {
             Vec4 change = Vec4::Zero();
             for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {

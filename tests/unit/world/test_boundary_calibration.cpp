@@ -1,0 +1,57 @@
+#include "flotsam/sph/kernel.hpp"
+#include "support/catch.hpp"
+#include "world/boundary_calibration.hpp"
+
+using namespace flotsam;
+
+namespace {
+
+/// A square lattice of samples d apart, of 15 x 15 in the plane z = 0 (a line of 15 in two dimensions).
+std::vector<Vec3d> lattice(double d, int dimensions)
+{
+    std::vector<Vec3d> points;
+    for (int x = 0; x < 15; ++x) {
+        for (int y = 0; y < (dimensions == 3 ? 15 : 1); ++y) points.emplace_back(d * x, d * y, 0.0);
+    }
+    return points;
+}
+
+std::size_t middle(int dimensions)
+{
+    return dimensions == 3 ? 7 * 15 + 7 : 7;
+}
+
+} // namespace
+
+TEST_CASE("a sample's volume is the calibrated part of what its neighbours leave it", "[world]")
+{
+    const int dimensions = GENERATE(2, 3);
+    const double d = 0.02;
+    const std::vector<Vec3d> points = lattice(d, dimensions);
+    const std::vector<double> volumes = sample_volumes(points, d, dimensions);
+    const CubicSpline kernel(2.0 * d, dimensions);
+    const std::size_t at = middle(dimensions);
+    double sum = 0.0; // brute force
+    for (const Vec3d& p : points)
+        sum += static_cast<double>(kernel.value(static_cast<Scalar>((p - points[at]).norm())));
+    REQUIRE(volumes.size() == points.size());
+    CHECK(volumes[at] == Approx(boundary_calibration(dimensions).volume / sum).epsilon(1e-5)); // floats
+    CHECK(volumes[0] > volumes[at]); // fewer neighbours, more room
+}
+
+TEST_CASE("sample volumes scale with the spacing", "[world]")
+{
+    const int dimensions = GENERATE(2, 3);
+    const std::size_t at = middle(dimensions);
+    const double small = sample_volumes(lattice(0.01, dimensions), 0.01, dimensions)[at];
+    const double large = sample_volumes(lattice(0.1, dimensions), 0.1, dimensions)[at];
+    CHECK(large == Approx(std::pow(10.0, dimensions) * small).epsilon(1e-4)); // neighbours at 2 d count nothing
+}
+
+TEST_CASE("samples lie inside the solid, not deeper than a spacing or two", "[world]")
+{
+    const int dimensions = GENERATE(2, 3);
+    CHECK(boundary_calibration(dimensions).inset > 0.0);
+    CHECK(boundary_calibration(dimensions).inset < 2.0);
+    CHECK(boundary_calibration(dimensions).volume > 0.0);
+}
