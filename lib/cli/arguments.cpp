@@ -59,6 +59,20 @@ void add_check(CLI::App& app, Arguments& arguments)
     check->callback([&arguments] { arguments.verb = Arguments::Verb::check; });
 }
 
+/// What is wrong with the command line; CLI11 does not say which word it was.
+std::string reason(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv)
+{
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
+        for (const CLI::App* command : app.get_subcommands())
+            for (const std::string& word : command->remaining())
+                if (word.rfind('-', 0) == 0)
+                    return "flotsam " + command->get_name() + " has no option " + word.substr(0, word.find('='));
+    if (app.get_subcommands().empty())
+        return argc < 2 ? std::string("a command is missing: run or check")
+                        : std::string("there is no command \"") + argv[1] + "\"; there are run and check";
+    return error.what();
+}
+
 } // namespace
 
 Parsed parse_arguments(int argc, char** argv)
@@ -74,10 +88,15 @@ Parsed parse_arguments(int argc, char** argv)
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return {std::nullopt, app.exit(error)}; // help, version
-        std::cerr << "error: " << error.what() << "\nflotsam --help says what there is\n";
+        std::cerr << "error: " << reason(app, error, argc, argv) << "; flotsam --help says what there is\n";
         return {std::nullopt, 2};
     }
-    if (arguments.out.empty()) arguments.out = std::filesystem::path("out") / arguments.scene.stem();
+    const bool names_out = app.get_subcommand("run")->count("--out") > 0;
+    if (names_out && arguments.out.empty()) {
+        std::cerr << "error: --out must be the name of a directory and is empty\n";
+        return {std::nullopt, 2};
+    }
+    if (!names_out) arguments.out = std::filesystem::path("out") / arguments.scene.stem();
     return {arguments, 0};
 }
 

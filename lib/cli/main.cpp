@@ -5,14 +5,25 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
 
 namespace flotsam::cli {
 namespace {
 
 enum ExitCode { kDone = 0, kRunFailed = 1, kInputRefused = 2 };
+
+/// One sentence on one line, whatever names of files and keys hold.
+void print_error(std::string sentence)
+{
+    std::replace_if(
+        sentence.begin(), sentence.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    std::cerr << "error: " << sentence << std::endl;
+}
 
 void run(const Arguments& arguments)
 {
@@ -36,14 +47,13 @@ int exit_code_of(const Arguments& arguments)
         arguments.verb == Arguments::Verb::run ? run(arguments) : check(arguments);
         return kDone;
     } catch (const InputError& error) {
-        std::cerr << "error: " << error.what() << std::endl;
+        print_error(error.what());
         return kInputRefused;
     } catch (const std::bad_alloc&) {
-        std::cerr << "error: " << arguments.scene.string() << ": the memory ran out; use a larger particle_spacing"
-                  << std::endl;
+        print_error(arguments.scene.string() + ": the memory ran out; use a larger particle_spacing");
         return kRunFailed;
     } catch (const std::exception& error) {
-        std::cerr << "error: " << error.what() << std::endl;
+        print_error(error.what());
         return kRunFailed;
     }
 }
@@ -53,6 +63,10 @@ int exit_code_of(const Arguments& arguments)
 
 int main(int argc, char** argv)
 {
+    // A reader of the output that went away and a file that may grow no further are errors of a write, not of the
+    // program: a run that has gone for hours is recorded all the same, or ends in a sentence.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     const auto parsed = flotsam::cli::parse_arguments(argc, argv);
     return parsed.arguments ? flotsam::cli::exit_code_of(*parsed.arguments) : parsed.exit_code;
 }

@@ -43,7 +43,7 @@ Row draft_row(const BodyReport& body, const RunReport& report)
     const auto length = [](const std::optional<double>& value) { return value ? fixed(*value, 4) : std::string("-"); };
     Row row{body.name, body.mass ? fixed(*body.mass / body.volume / report.rest_density, 3) : "-",
             fixed(body.tilt_deg, 1), length(body.draft)};
-    if (body.mass && !body.exact_draft) {
+    if (body.mass && body.draft && !body.exact_draft) {
         row.insert(row.end(), {"sinks", "-", "-"});
         return row;
     }

@@ -126,6 +126,8 @@ TriangleMesh read_with_assimp(const path& file)
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
     const std::string message = importer.GetErrorString();
     if (scene == nullptr && message == "No meshes remaining") refuse(file, "it has no triangles");
+    if (scene == nullptr && message.find("No suitable reader") != std::string::npos)
+        refuse(file, "it is truncated, or no " + extension_of(file).substr(1) + " file");
     if (scene == nullptr || scene->mRootNode == nullptr) refuse(file, message.empty() ? "it is not valid" : message);
     SceneReader reader(file, *scene);
     // assimp turns COLLADA to Y up and metres by way of the root's transform, which a COLLADA scene has no other use

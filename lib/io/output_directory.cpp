@@ -111,6 +111,8 @@ OutputDirectory::OutputDirectory(const fs::path& target)
     std::error_code error;
     fs::create_directories(path_, error);
     if (error) remove_traces();
+    if (error && error != std::errc::no_space_on_device) // a name that cannot be: somebody's input
+        throw InputError("cannot make the output directory " + target_.string() + ": " + error.message());
     check(error, "make the output directory " + target_.string());
 }
 

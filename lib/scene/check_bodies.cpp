@@ -101,18 +101,28 @@ double wall_in_body(const TriangleMesh& wall, const PlacedBody& body, double spa
     return deepest;
 }
 
+/// Points spread evenly over a box, none on its sides.
+void add_grid(const Aabb& box, std::vector<Vec3d>& points)
+{
+    constexpr int kPerAxis = 8;
+    for (int n = 0; n < kPerAxis * kPerAxis * kPerAxis; ++n) {
+        const Vec3d fraction(n % kPerAxis + 0.5, n / kPerAxis % kPerAxis + 0.5, n / kPerAxis / kPerAxis + 0.5);
+        points.push_back(box.min + (box.size().array() * fraction.array() / kPerAxis).matrix());
+    }
+}
+
 /// Whether the water is inside a closed wall: asked of points of the fluid.
 bool holds_the_fluid(const SceneFile& scene, const PreparedScene& prepared, const SurfaceQuery& wall)
 {
     std::vector<Vec3d> points;
-    constexpr int kPerAxis = 8;
-    for (const SceneBlock& block : prepared.blocks)
-        for (int n = 0; n < kPerAxis * kPerAxis * kPerAxis; ++n) {
-            const Vec3d fraction(n % kPerAxis + 0.5, n / kPerAxis % kPerAxis + 0.5, n / kPerAxis / kPerAxis + 0.5);
-            points.push_back(block.box.min + (block.box.size().array() * fraction.array() / kPerAxis).matrix());
-        }
-    for (const TriangleMesh& mesh : prepared.fluid_meshes)
-        points.insert(points.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const SceneBlock& block : prepared.blocks) add_grid(block.box, points);
+    for (const TriangleMesh& mesh : prepared.fluid_meshes) { // its vertices may lie on the wall
+        std::vector<Vec3d> filled;
+        add_grid(bounds(mesh), filled);
+        const SurfaceQuery query(mesh);
+        std::erase_if(filled, [&](const Vec3d& point) { return !query.inside(point); });
+        points.insert(points.end(), filled.begin(), filled.end());
+    }
     if (scene.dimensions == 2)
         for (Vec3d& point : points) point.y() = 0.0;
     const auto inside = std::count_if(points.begin(), points.end(), [&](const Vec3d& p) { return wall.inside(p); });

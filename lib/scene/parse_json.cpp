@@ -10,8 +10,11 @@ namespace {
 /// Why a text is no JSON.
 struct SyntaxError {
     std::string sentence;
-    bool overflow = false; ///< a number that is not finite, the rest may be right
+    bool overflow = false; ///< of a number that is not finite or of the nesting, the rest may be right
 };
+
+/// No scene comes near; what prints a value goes down with its levels, and a deep file must not take the stack.
+constexpr std::size_t kDeepest = 32;
 
 /// Builds the document; unlike nlohmann's own builder it refuses keys that come twice and keeps the place of an error.
 class StrictBuilder final : public nlohmann::json_sax<Json> {
@@ -87,6 +90,10 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
     }
     bool open(Json value)
     {
+        if (open_.size() == kDeepest) {
+            error = {"lists and objects are more than " + std::to_string(kDeepest) + " levels deep", true};
+            return false;
+        }
         open_.push_back(place(std::move(value)));
         keys_.emplace_back();
         return true;
@@ -157,7 +164,8 @@ Json parse_strictly(std::string_view text, const std::string& name)
 void apply_override(Json& document, const std::string& path_and_value, const std::string& name)
 {
     const std::size_t equals = path_and_value.find('=');
-    const std::string where = name + ": --set " + path_and_value;
+    const bool is_long = path_and_value.size() > 80;
+    const std::string where = name + ": --set " + (is_long ? path_and_value.substr(0, 77) + "..." : path_and_value);
     if (equals == std::string::npos || equals == 0)
         throw InputError(where + ": must be path=value, like bodies.0.density=300");
     Json* place = &document;

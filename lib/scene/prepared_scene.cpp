@@ -150,6 +150,22 @@ void place_body(const SceneBody& body, const MassProperties& uniform, int dimens
     made.start = body.pose * made.frame;
 }
 
+/// Mass lies in the body, so its centre lies between the body's ends.
+void refuse_outer_center(const Vec3d& center, const TriangleMesh& mesh, const SceneFile& scene, const std::string& name)
+{
+    const Aabb box = bounds(mesh);
+    const double tolerance = 1e-6 * box.size().maxCoeff();
+    const bool within =
+        (center.array() >= box.min.array() - tolerance).all() && (center.array() <= box.max.array() + tolerance).all();
+    if (within) return;
+    std::ostringstream sentence;
+    const Eigen::IOFormat list(4, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
+    sentence << scene.file.string() << ": " << name << " has its center_of_mass at " << center.format(list)
+             << " in the frame of its shape, outside of the shape, which reaches from " << box.min.format(list)
+             << " to " << box.max.format(list);
+    throw InputError(sentence.str());
+}
+
 PreparedBody prepared_body(const SceneFile& scene, const SceneBody& body, PreparedScene& prepared)
 {
     PreparedBody made;
@@ -168,6 +184,7 @@ PreparedBody prepared_body(const SceneFile& scene, const SceneBody& body, Prepar
                  << " m long, and must be at least 2 particle spacings (" << 2.0 * scene.particle_spacing << " m)";
         throw InputError(sentence.str());
     }
+    if (body.center_of_mass) refuse_outer_center(*body.center_of_mass, made.mesh, scene, name);
     refuse_overlapping_parts(meshes, scene.file.string() + ": " + name, 0.25 * scene.particle_spacing);
     place_body(body, mass_properties(made.mesh), scene.dimensions, made);
 

@@ -1,7 +1,9 @@
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/scene/scene_file.hpp"
+#include "scene/history_columns.hpp"
 #include "scene/read_parts.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -10,6 +12,10 @@
 namespace flotsam {
 namespace scene {
 namespace {
+
+/// Beyond these somebody misread a unit, and the run would not end.
+constexpr double kMostSteps = 1e9;
+constexpr double kMostFrames = 1e6;
 
 void read_version(const JsonObject& root)
 {
@@ -93,6 +99,15 @@ SceneProbe read_probe(const JsonNode& node, const ReadContext& context)
 }
 
 /// History columns are called after bodies and probes, so their names are all different.
+void refuse_columns_that_come_twice(const std::vector<std::string>& columns, const JsonObject& root)
+{
+    std::set<std::string> seen;
+    for (const std::string& column : columns)
+        if (!seen.insert(column).second)
+            root.node().refuse("would have two columns \"" + column +
+                               "\" in history.csv; give another name to a body or probe");
+}
+
 void add_name(std::set<std::string>& names, const std::string& name, const JsonNode& node)
 {
     if (!names.insert(name).second)
@@ -116,6 +131,17 @@ void read_time(const JsonObject& root, SceneFile& scene)
     time_step.read("max", scene.max_time_step, {Allowed::Range::positive, "s"});
     time_step.read("cfl", scene.cfl, kPositive);
     if (!(scene.cfl <= 1.0)) time_step.required("cfl").refuse_value("must be a number in (0, 1]");
+    if (!(scene.max_time_step * kMostSteps >= scene.duration))
+        time_step.required("max").refuse_value("must be at least a billionth of the duration");
+}
+
+void refuse_too_many_frames(const JsonObject& root, const SceneFile& scene)
+{
+    if (scene.duration * scene.output.frames_per_second <= kMostFrames) return;
+    root.required("duration")
+        .refuse_value("must have at most a million frames, of " +
+                      std::to_string(std::llround(std::min(scene.output.frames_per_second, 1e15))) +
+                      " output.frames_per_second");
 }
 
 SceneFile read_root(const Json& document, const std::filesystem::path& file)
@@ -147,7 +173,9 @@ SceneFile read_root(const Json& document, const std::filesystem::path& file)
         scene.probes.push_back(read_probe(node, context));
         add_name(names, scene.probes.back().name, node);
     }
+    refuse_columns_that_come_twice(history_columns(scene), root);
     if (const auto node = root.find("output")) scene.output = read_output(*node, context);
+    refuse_too_many_frames(root, scene);
     return scene;
 }
 

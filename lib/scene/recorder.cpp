@@ -1,5 +1,7 @@
 #include "scene/recorder.hpp"
 
+#include "scene/history_columns.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,17 +10,6 @@
 
 namespace flotsam::scene {
 namespace {
-
-std::vector<std::string> history_columns(const SceneFile& scene)
-{
-    std::vector<std::string> columns{"t"};
-    for (const SceneBody& body : scene.bodies)
-        for (const char* suffix :
-             {"x", "y", "z", "rx", "ry", "rz", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz"})
-            columns.push_back(body.name + "." + suffix);
-    for (const SceneProbe& probe : scene.probes) columns.push_back(probe.name);
-    return columns;
-}
 
 void append(std::vector<double>& row, const Vec3d& v)
 {
@@ -65,6 +56,17 @@ Camera camera_of(const ScenePictures& pictures, const PictureScene& picture, int
 }
 
 } // namespace
+
+std::vector<std::string> history_columns(const SceneFile& scene)
+{
+    std::vector<std::string> columns{"t"};
+    for (const SceneBody& body : scene.bodies)
+        for (const char* suffix :
+             {"x", "y", "z", "rx", "ry", "rz", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz"})
+            columns.push_back(body.name + "." + suffix);
+    for (const SceneProbe& probe : scene.probes) columns.push_back(probe.name);
+    return columns;
+}
 
 // -- history ------------------------------------------------------------------------------------------------------
 

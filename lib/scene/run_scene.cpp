@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <sstream>
 
 namespace flotsam {
 namespace scene {
@@ -21,6 +22,14 @@ std::int64_t peak_memory_bytes()
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string in_words(double value)
+{
+    std::ostringstream text;
+    text.precision(3);
+    text << value;
+    return text.str();
 }
 
 /// Twice the speed of sound in water: nothing that is still a fluid of constant density is so fast.
@@ -118,6 +127,10 @@ class Run {
         const double accuracy = 1e-9 * scene_.duration;
         for (double left = time - world_.fluid().time(); left > accuracy; left = time - world_.fluid().time()) {
             const double allowed = world_.fluid().allowed_time_step();
+            if (!(allowed > accuracy))
+                throw RunFailure(scene_.file.string() + ": the time step fell to " + in_words(allowed) +
+                                 " s at t = " + std::to_string(world_.fluid().time()) +
+                                 " s, with which the run would not end; forces, speeds or viscosity are too large");
             const StepReport step = world_.step(left / std::ceil(left / allowed * (1.0 - 1e-9)));
             refuse_broken_state(step, scene_, world_);
             tally_.add(step);

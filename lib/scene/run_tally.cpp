@@ -13,6 +13,12 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// A water line is a median of many levels: not one for each step.
 constexpr int kDraftsMeasured = 32;
 
+/// Whether water comes to rest level, as drafts are measured.
+bool is_level(const Vec3d& gravity)
+{
+    return gravity.z() < 0.0 && gravity.head<2>().norm() < 1e-6 * gravity.norm();
+}
+
 Vec3d momentum(const FluidState& fluid)
 {
     Vec3d sum = Vec3d::Zero();
@@ -93,7 +99,7 @@ void RunTally::measure_drafts(double dt)
 {
     const std::vector<BodyState> states = world_.body_states();
     const std::optional<double> level = world_.fluid().waterline(states);
-    if (!level) return;
+    if (!level || !is_level(scene_.gravity)) return;
     waterline_.add(*level, dt);
     for (std::size_t k = 0; k < bodies_.size(); ++k)
         bodies_[k].draft.add(*level - lowest_point(prepared_.bodies[k].mesh, states[k].pose), dt);
@@ -148,6 +154,7 @@ BodyReport RunTally::report_body(std::size_t k) const
     report.torque_fluid_mean = bodies_[k].torque.mean().value_or(Vec3d::Zero());
     if (!(body.mass > 0.0)) return report;
     report.mass = body.mass;
+    if (!is_level(scene_.gravity)) return report;
     report.exact_draft = equilibrium_draft(body.mesh, now.pose.orientation, body.mass / scene_.fluid.density);
     return report;
 }

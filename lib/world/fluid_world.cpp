@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
 
 namespace flotsam {
 namespace {
@@ -43,20 +45,38 @@ FluidWorld::~FluidWorld() = default;
 FluidWorld::FluidWorld(FluidWorld&&) noexcept = default;
 FluidWorld& FluidWorld::operator=(FluidWorld&&) noexcept = default;
 
+/// Water that was poured twice into one place would burst out of it: what came first stays.
+void FluidWorld::Impl::seed_where_dry(FluidSeed seed)
+{
+    const auto is_wet = [&](const Vec3d& point) {
+        return std::any_of(seeds.begin(), seeds.end(),
+                           [&](const FluidSeed& earlier) { return earlier.covers && earlier.covers(point); });
+    };
+    if (const std::size_t twice = std::erase_if(seed.positions, is_wet); twice > 0)
+        notes.push_back(std::to_string(twice) + " fluid particles lay in an earlier block or mesh of fluid too and "
+                                                "were left out");
+    seeds.push_back(std::move(seed));
+}
+
 void FluidWorld::add_block(const Aabb& block, const Vec3d& velocity)
 {
     require(!impl_->prepared, "water must be added before the first step");
     require(!block.empty(), "a block's min must not exceed its max [m]");
     require(velocity.allFinite(), "a block's velocity must be finite [m/s]");
-    impl_->seeds.push_back({fill_box(block, impl_->spacing(), impl_->settings.dimensions), velocity, true});
+    const bool is_flat = impl_->settings.dimensions == 2;
+    const auto covers = [block, is_flat](const Vec3d& p) {
+        return block.contains(is_flat ? Vec3d(p.x(), block.center().y(), p.z()) : p);
+    };
+    impl_->seed_where_dry({fill_box(block, impl_->spacing(), impl_->settings.dimensions), velocity, true, covers});
 }
 
 void FluidWorld::add_fluid_mesh(const TriangleMesh& closed, const Vec3d& velocity)
 {
     require(!impl_->prepared, "water must be added before the first step");
     require(velocity.allFinite(), "the velocity of a mesh's water must be finite [m/s]");
-    const SurfaceQuery query(closed);
-    impl_->seeds.push_back({fill_mesh(query, impl_->spacing(), impl_->settings.dimensions), velocity, true});
+    const auto query = std::make_shared<SurfaceQuery>(closed);
+    const auto covers = [query](const Vec3d& p) { return query->bounds().contains(p) && query->inside(p); };
+    impl_->seed_where_dry({fill_mesh(*query, impl_->spacing(), impl_->settings.dimensions), velocity, true, covers});
 }
 
 void FluidWorld::add_particles(std::span<const Vec3d> positions, const Vec3d& velocity)
@@ -64,7 +84,7 @@ void FluidWorld::add_particles(std::span<const Vec3d> positions, const Vec3d& ve
     require(!impl_->prepared, "water must be added before the first step");
     for (const Vec3d& p : positions) require(p.allFinite(), "particle positions must be finite [m]");
     require(velocity.allFinite(), "the velocity of particles must be finite [m/s]");
-    impl_->seeds.push_back({{positions.begin(), positions.end()}, velocity, false});
+    impl_->seeds.push_back({{positions.begin(), positions.end()}, velocity, false, {}});
 }
 
 int FluidWorld::add_wall(const TriangleMesh& mesh, WallSide side)

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace flotsam {
 
@@ -37,6 +38,7 @@ struct FluidSeed {
     std::vector<Vec3d> positions;
     Vec3d velocity = Vec3d::Zero();
     bool cut = true;
+    std::function<bool(const Vec3d&)> covers; ///< whether a point is in the region that was filled; may be empty
 };
 
 /// Largest of terms, for ordered_sum.
@@ -120,6 +122,7 @@ struct FluidWorld::Impl {
     // prepare.cpp
     void prepare(Bodies& port);
     void choose_wall_sides();
+    void seed_where_dry(FluidSeed seed);
     void cut_and_place_fluid();
     void sample_surfaces();
     void relax();

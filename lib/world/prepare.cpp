@@ -162,8 +162,8 @@ void FluidWorld::Impl::sample_surfaces()
         }
         if (samples.thin_fraction > 0.0) {
             std::ostringstream note;
-            note.precision(2);
-            note << name << " is thinner than a particle spacing on " << 100.0 * samples.thin_fraction
+            note << name << " is thinner than two layers of samples take, " << 2.0 * sampling.inset << " m, on "
+                 << std::lround(100.0 * samples.thin_fraction)
                  << " % of its surface: one layer of samples in its middle";
             notes.push_back(note.str());
         }

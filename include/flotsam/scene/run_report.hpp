@@ -10,7 +10,7 @@
 namespace flotsam {
 
 /// Where a body ended, and means over the last quarter of the run. A body's position is its centre of mass; its
-/// rotation is that of the scene's shape.
+/// rotation is that of the scene's shape. Water lines and drafts are measured where gravity points down the z axis.
 struct BodyReport {
     std::string name;
     std::optional<double> mass;              ///< [kg]

@@ -47,13 +47,17 @@ TEST_CASE("help says what there is", "[cli]")
 TEST_CASE("a wrong command line is refused with code 2", "[cli]")
 {
     const TemporaryDirectory directory("flotsam_cli_usage");
-    for (const char* arguments : {"", "walk", "run", "run a.json --out", "run a.json --threads many", "check --x a"}) {
+    for (const char* arguments : {"", "walk", "run", "run a.json --out", "run a.json --threads many", "check --x a",
+                                  "run a.json --threads -1", "run a.json --out ''"}) {
         const Outcome wrong = run_program(directory, arguments);
         INFO(arguments);
         CHECK(wrong.code == 2);
         CHECK(wrong.out.empty());
         CHECK(contains(wrong.err, "error: "));
+        CHECK(wrong.err.find('\n') == wrong.err.size() - 1);
     }
+    CHECK(contains(run_program(directory, "walk").err, "there is no command \"walk\""));
+    CHECK(contains(run_program(directory, "run a.json --out b --fast").err, "no option --fast"));
 }
 
 TEST_CASE("refused input exits with 2 and one sentence, and writes nothing", "[cli]")
@@ -61,10 +65,13 @@ TEST_CASE("refused input exits with 2 and one sentence, and writes nothing", "[c
     const TemporaryDirectory directory("flotsam_cli_refused");
     directory.write("scene.json", kRaft);
     directory.write("broken.json", "{\"flotsam\": 1,");
+    directory.write("newline.json", "{\"flo\\ntsam\": 1}");
+    directory.write("file", "");
     for (const char* arguments :
          {"run none.json --out out", "run broken.json --out out", "run scene.json --out out --set bodies.raft.mass=1",
           "run scene.json --out out --set duration=-1", "run scene.json --out out --set particle_spacing=1e-9",
-          "run scene.json --out out --set bodies.raft.position=[9,9]", "check broken.json"}) {
+          "run scene.json --out out --set bodies.raft.position=[9,9]", "check broken.json", "check newline.json",
+          "run scene.json --out file/out"}) {
         const Outcome refused = run_program(directory, arguments);
         INFO(arguments << ": " << refused.err);
         CHECK(refused.code == 2);
@@ -99,6 +106,30 @@ TEST_CASE("check says what a scene holds", "[cli]")
     CHECK(contains(check.out, "nothing wrong"));
     CHECK(contains(check.out, "raft"));
     CHECK(contains(check.out, "note: "));
+}
+
+TEST_CASE("a file that may grow no further is an error, no signal", "[cli]")
+{
+    const TemporaryDirectory directory("flotsam_cli_limit");
+    directory.write("scene.json", kRaft);
+    const std::string command = "cd '" + directory.path().string() +
+                                "' && ulimit -f 8 && '" FLOTSAM_PROGRAM
+                                "' run scene.json --set output.vtk=true --quiet --out out 2>stderr.txt";
+    const int status = std::system(command.c_str());
+    INFO(directory.read("stderr.txt"));
+    CHECK(WEXITSTATUS(status) == 1);
+    CHECK(contains(directory.read("stderr.txt"), ".vtp"));
+    CHECK_FALSE(std::filesystem::exists(directory.path() / "out"));
+}
+
+TEST_CASE("a run outlives the reader of its output", "[cli]")
+{
+    const TemporaryDirectory directory("flotsam_cli_pipe");
+    directory.write("scene.json", kRaft);
+    const std::string command =
+        "cd '" + directory.path().string() + "' && '" FLOTSAM_PROGRAM "' run scene.json --out out | true";
+    REQUIRE(std::system(command.c_str()) == 0);
+    CHECK(std::filesystem::exists(directory.path() / "out/report.json"));
 }
 
 TEST_CASE("a full disk ends a run with code 1 and the file's name", "[cli]")

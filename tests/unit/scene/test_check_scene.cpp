@@ -174,3 +174,22 @@ TEST_CASE("the scenes of the repository pass", "[scene]")
     }
     CHECK(scenes >= 7);
 }
+
+TEST_CASE("a centre of mass outside of its body is refused", "[scene]")
+{
+    check_refused(kCrate, {"bodies.0.center_of_mass=[0,0,0.2]"}, {"\"crate\"", "center_of_mass", "[0, 0, 0.2]"});
+    CHECK(checked(kCrate, {"bodies.0.center_of_mass=[0,0,0.1]"}).bodies.size() == 1);
+}
+
+TEST_CASE("a closed tank filled from a mesh that touches it holds the water", "[scene]")
+{
+    const TemporaryDirectory directory("flotsam_filled_tank");
+    directory.write("tank.obj", tetrahedron());
+    const std::string text = R"({
+      "flotsam": 1, "particle_spacing": 0.05, "duration": 0.1,
+      "fluids": [{"meshes": [{"file": "tank.obj"}]}],
+      "walls": [{"mesh": {"file": "tank.obj"}}],
+      "bodies": [{"name": "ball", "shape": {"sphere": 0.1}, "density": 500, "position": [0.2, 0.2, 0.2]}]
+    })";
+    CHECK(checked(text, {}, directory.path() / "scene.json").bodies.size() == 1);
+}

@@ -216,3 +216,17 @@ TEST_CASE("files that are no scenes are refused", "[scene]")
     check_contains(refusal_of("{\n  \"flotsam\": 1,\n  oops\n}"), {"line 3, column", "not JSON"});
     check_contains(refusal_of("[1, 2]"), {"the scene must be an object"});
 }
+
+TEST_CASE("a deep file, a run without end and columns of one name are refused", "[scene]")
+{
+    const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+    check_contains(refusal_of(changed(kRaft, "0.02", deep)), {"levels deep"});
+    const std::string override_sentence = refusal_of(kRaft, {"duration=" + deep});
+    check_contains(override_sentence, {"--set duration=", "levels deep"});
+    CHECK(override_sentence.size() < 300);
+    check_contains(refusal_of(kRaft, {"output.frames_per_second=1e12"}), {"duration", "a million frames"});
+    check_contains(refusal_of(kRaft, {"duration=1e300", "time_step.max=1e299"}), {"duration", "a million frames"});
+    check_contains(refusal_of(kRaft, {"time_step.max=1e-12"}), {"time_step.max", "billionth"});
+    check_contains(refusal_of(kRaft, {"probes.floor.name=t"}), {"two columns \"t\""});
+    check_contains(refusal_of(kRaft, {"probes.floor.name=raft.x"}), {"two columns \"raft.x\""});
+}

@@ -210,3 +210,30 @@ TEST_CASE("a report is JSON whatever is in it", "[scene]")
     CHECK(json["bodies"][0]["draft"].is_null());
     CHECK(json["failure"] == "came apart");
 }
+
+TEST_CASE("a time step that falls to nothing ends the run", "[scene][run]")
+{
+    CHECK_THROWS_WITH(ran(kRaft, {"fluids.0.kinematic_viscosity=1e30"}), Catch::Contains("the time step fell to"));
+}
+
+TEST_CASE("drafts are reported where gravity points down only", "[scene][run]")
+{
+    const RunReport down = ran(kRaft, {});
+    REQUIRE(down.bodies.at(0).waterline);
+    CHECK(down.bodies[0].exact_draft);
+    const RunReport free = ran(kRaft, {"gravity=[0,0]"});
+    CHECK_FALSE(free.bodies.at(0).waterline);
+    CHECK_FALSE(free.bodies[0].draft);
+    CHECK_FALSE(free.bodies[0].exact_draft);
+}
+
+TEST_CASE("blocks of fluid that overlap fill their union once", "[scene][run]")
+{
+    const std::string first = R"({"min": [0, 0], "max": [0.4, 0.3]})",
+                      second = R"({"min": [0.2, 0.1], "max": [0.6, 0.3]})";
+    const RunReport report = ran(kRaft, {"bodies=[]", "fluids.0.blocks=[" + first + "," + second + "]"});
+    CHECK(report.fluid_particles == 300 + 100);
+    CHECK(report.compression.max < 0.2); // a burst had more
+    REQUIRE(report.notes.size() == 1);
+    CHECK(report.notes[0].find("100 fluid particles lay in an earlier block") == 0);
+}
