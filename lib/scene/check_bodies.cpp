@@ -20,7 +20,7 @@ struct PlacedBody {
     Aabb reach;                 ///< of the surface, in the world
 
     /// In 2-D, where bodies are a metre long in y, all points are moved into the plane, far from the ends.
-    PlacedBody(std::string body_name, const PreparedBody& body, const SceneFile& scene)
+    PlacedBody(const std::string& body_name, const PreparedBody& body, const SceneFile& scene)
         : name("body \"" + body_name + "\""), pose(body.start), query(body.mesh)
     {
         const double edge = std::max(scene.particle_spacing, bounds(body.mesh).size().maxCoeff() / 64.0);

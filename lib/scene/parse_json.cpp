@@ -19,7 +19,7 @@ constexpr std::size_t kDeepest = 32;
 /// Builds the document; unlike nlohmann's own builder it refuses keys that come twice and keeps the place of an error.
 class StrictBuilder final : public nlohmann::json_sax<Json> {
   public:
-    StrictBuilder(std::string_view text) : text_(text) {}
+    explicit StrictBuilder(std::string_view text) : text_(text) {}
 
     Json root;
     SyntaxError error;
