@@ -74,6 +74,7 @@ struct FluidWorld::Impl {
     std::vector<std::string> notes;
 
     std::vector<FluidSeed> seeds;
+    std::vector<char> placed; ///< by id: put there as a single particle, not to be relaxed
     std::vector<Wall> walls;
     std::vector<BodySurface> bodies;
 

@@ -116,6 +116,7 @@ void FluidWorld::Impl::cut_and_place_fluid()
             position.head<3>() = seed.positions[k].cast<Scalar>();
             fluid.position.push_back(position);
             fluid.velocity.push_back(velocity);
+            placed.push_back(seed.cut ? 0 : 1);
         }
         max_speed = std::max(max_speed, seed.velocity.norm());
     }
@@ -195,7 +196,10 @@ void FluidWorld::Impl::relax()
         shift_diagonal.resize(fluid.size());
         static_cast<void>(solve_shift());
         new_position.resize(fluid.size());
-        workers.for_each(fluid.size(), [&](std::size_t i) { new_position[i] = fluid.position[i] + shift[i]; });
+        workers.for_each(fluid.size(), [&](std::size_t i) {
+            new_position[i] = fluid.position[i];
+            if (placed[fluid.id[i]] == 0) new_position[i] += shift[i];
+        });
         guard_relaxation();
         fluid.position.swap(new_position);
     }

@@ -14,16 +14,15 @@ constexpr double kSpacing = 0.02, kSize = 12 * kSpacing; // D/d = 12
 /// A body let go with its middle at the water's level, in a tank of 28 x 30 x 16 spacings (2-D: 60 x 30).
 RunReport float_body(int dimensions, const std::string& shape, const std::string& more, double ratio, double duration)
 {
-    std::ostringstream scene;
     const bool plane = dimensions == 2;
-    const double x = plane ? 1.2 : 0.56, y = 0.6, z = plane ? 0.6 : 0.32;
+    const double x = plane ? 1.2 : 0.56, y = plane ? 0.0 : 0.6, z = plane ? 0.6 : 0.32;
+    std::ostringstream size, scene;
+    size << "[" << x << ", " << y << ", ";
     scene << R"({"flotsam": 1, "dimensions": )" << dimensions << R"(, "particle_spacing": 0.02, "duration": )"
-          << duration << R"(, "time_step": {"max": 0.004, "cfl": 0.4}, "fluids": [{"blocks": [{"min": [0, )"
-          << (plane ? 0 : 0) << R"(, 0], "max": [)" << x << ", " << (plane ? 0.0 : y) << ", " << z
-          << R"(]}]}], "walls": [{"box": {"min": [0, )" << (plane ? -0.5 : 0.0) << R"(, 0], "max": [)" << x << ", "
-          << (plane ? 0.5 : y) << R"(, 1], "open": ["+z"]}}], "bodies": [{"name": "body", "shape": )" << shape
-          << R"(, "density": )" << 1000.0 * ratio << more << R"(, "position": [)" << x / 2 << ", "
-          << (plane ? 0.0 : y / 2) << ", " << z << "]}]}";
+          << duration << R"(, "fluids": [{"blocks": [{"min": [0, 0, 0], "max": )" << size.str() << z
+          << R"(]}]}], "walls": [{"box": {"min": [0, 0, 0], "max": )" << size.str()
+          << R"(1], "open": ["+z"]}}], "bodies": [{"name": "body", "shape": )" << shape << R"(, "density": )"
+          << 1000.0 * ratio << more << R"(, "position": [)" << x / 2 << ", " << y / 2 << ", " << z << "]}]}";
     return run_text(scene.str());
 }
 

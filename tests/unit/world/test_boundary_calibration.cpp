@@ -28,7 +28,8 @@ TEST_CASE("a sample's volume is the calibrated part of what its neighbours leave
     const int dimensions = GENERATE(2, 3);
     const double d = 0.02;
     const std::vector<Vec3d> points = lattice(d, dimensions);
-    const std::vector<double> volumes = sample_volumes(points, d, dimensions);
+    const std::vector<double> depths(points.size(), boundary_calibration(dimensions).inset * d);
+    const std::vector<double> volumes = sample_volumes(points, depths, d, dimensions);
     const CubicSpline kernel(2.0 * d, dimensions);
     const std::size_t at = middle(dimensions);
     double sum = 0.0; // brute force
@@ -43,9 +44,25 @@ TEST_CASE("sample volumes scale with the spacing", "[world]")
 {
     const int dimensions = GENERATE(2, 3);
     const std::size_t at = middle(dimensions);
-    const double small = sample_volumes(lattice(0.01, dimensions), 0.01, dimensions)[at];
-    const double large = sample_volumes(lattice(0.1, dimensions), 0.1, dimensions)[at];
+    const auto volume = [&](double d) {
+        const std::vector<Vec3d> points = lattice(d, dimensions);
+        const std::vector<double> depths(points.size(), boundary_calibration(dimensions).inset * d);
+        return sample_volumes(points, depths, d, dimensions)[at];
+    };
+    const double small = volume(0.01), large = volume(0.1);
     CHECK(large == Approx(std::pow(10.0, dimensions) * small).epsilon(1e-4)); // neighbours at 2 d count nothing
+}
+
+TEST_CASE("samples in the middle of a thin solid count less than deep ones", "[world]")
+{
+    const int dimensions = GENERATE(2, 3);
+    const double d = 0.02;
+    const std::size_t at = middle(dimensions);
+    const std::vector<Vec3d> points = lattice(d, dimensions);
+    const std::vector<double> deep(points.size(), boundary_calibration(dimensions).inset * d), flat(points.size(), 0.0);
+    const double sheet = sample_volumes(points, flat, d, dimensions)[at];
+    CHECK(sheet > 0.0);
+    CHECK(sheet < 0.6 * sample_volumes(points, deep, d, dimensions)[at]);
 }
 
 TEST_CASE("samples lie inside the solid, not deeper than a spacing or two", "[world]")

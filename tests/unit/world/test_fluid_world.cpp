@@ -176,7 +176,7 @@ TEST_CASE("a world without water, walls or bodies steps", "[world]")
     CHECK_FALSE(fluid.waterline({}));
 }
 
-TEST_CASE("single particles stay where the caller wants them, however close", "[world][!shouldfail]")
+TEST_CASE("single particles stay where the caller wants them, however close", "[world]")
 {
     // The relaxation at the start moves them too, though add_particles promises otherwise.
     FluidWorld fluid(plane());
