@@ -118,6 +118,9 @@ struct FluidWorld::Impl {
     [[nodiscard]] double spacing() const { return settings.particle_spacing; }
     [[nodiscard]] double support() const { return 2.0 * settings.particle_spacing; }
 
+    // readings.cpp
+    enum class Readable { any, free, bulk };
+    [[nodiscard]] Readable readable(std::size_t i) const;
     [[nodiscard]] double gauge_pressure(std::size_t i) const;
 
     // prepare.cpp

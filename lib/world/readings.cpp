@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace flotsam {
 namespace {
@@ -54,28 +55,50 @@ double FluidWorld::Impl::gauge_pressure(std::size_t i) const
     return 0.5 * settings.rest_density * fluid.particle_mass * sum;
 }
 
+/// How well the pressure of particle i can be read: in the bulk neither it nor a particle next to it touches a solid.
+FluidWorld::Impl::Readable FluidWorld::Impl::readable(std::size_t i) const
+{
+    const auto touches = [&](std::size_t k) { return boundary_pairs.start[k] != boundary_pairs.start[k + 1]; };
+    if (touches(i)) return Readable::any;
+    const Scalar next_sq = static_cast<Scalar>(1.25 * 1.25 * spacing() * spacing());
+    for (std::uint32_t k = fluid_pairs.start[i]; k < fluid_pairs.start[i + 1]; ++k) {
+        const std::uint32_t j = fluid_pairs.index[k];
+        if (touches(j) && (fluid.position[i] - fluid.position[j]).squaredNorm() < next_sq) return Readable::free;
+    }
+    return Readable::bulk;
+}
+
 double FluidWorld::pressure_at(const Vec3d& point) const
 {
     require(point.allFinite(), "a point must be finite [m]");
     const Impl& world = *impl_;
     if (world.fluid_pairs.rows() != world.fluid.size()) return 0.0; // before the first step
-    // Particles that touch no solid first, from a wider neighbourhood if there are few; then any.
-    for (const auto& [reach, free_only] : {std::pair{1, true}, std::pair{2, true}, std::pair{1, false}}) {
-        const CubicSpline kernel(reach * world.support(), world.settings.dimensions);
+    // The layer at a wall and the one that leans on it share its force unevenly: the bulk is asked first, from further
+    // away if there is little of it near, then what there is.
+    using Readable = Impl::Readable;
+    struct Try {
+        int reach;         ///< cells
+        Readable least;    ///< of a particle
+        double min_filled; ///< volume fraction of the kernel that is enough to go by
+    };
+    for (const Try& t : {Try{2, Readable::bulk, 0.5}, Try{4, Readable::free, 0.1}, Try{1, Readable::any, 0.1}}) {
+        // A flat weight: next to a wall layers lie in turn above and below the mean.
+        const double radius = t.reach * world.support();
         double weights = 0.0, sum = 0.0;
-        visit_around(world.grid, world.fluid_cells, point, reach, [&](std::uint32_t j) {
-            if (free_only && world.boundary_pairs.start[j] != world.boundary_pairs.start[j + 1]) return;
+        visit_around(world.grid, world.fluid_cells, point, t.reach, [&](std::uint32_t j) {
             const Vec3d at = world.fluid.position[j].head<3>().cast<double>();
-            const double w = static_cast<double>(kernel.value(static_cast<Scalar>((point - at).norm())));
-            if (!(w > 0.0)) return;
+            const double w = 1.0 - (point - at).squaredNorm() / (radius * radius);
+            if (!(w > 0.0) || world.readable(j) < t.least) return;
             const double p = world.gauge_pressure(j);
             const double here =
                 p > 0.0 ? p + world.settings.rest_density * world.settings.gravity.dot(point - at) : 0.0;
             weights += w;
             sum += w * std::max(0.0, here);
         });
-        // Volume fraction of the kernel that is filled: a tenth is enough to go by.
-        if (weights * world.fluid.particle_mass / world.settings.rest_density > 0.1) return sum / weights;
+        const double all = world.settings.dimensions == 3 ? 8.0 / 15.0 * std::numbers::pi * std::pow(radius, 3)
+                                                          : 0.5 * std::numbers::pi * radius * radius;
+        const double filled = weights * world.fluid.particle_mass / world.settings.rest_density / all;
+        if (filled > t.min_filled) return sum / weights;
     }
     return 0.0;
 }
