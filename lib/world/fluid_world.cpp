@@ -94,6 +94,7 @@ int FluidWorld::add_wall(const TriangleMesh& mesh, WallSide side)
     Wall wall;
     wall.mesh = mesh;
     wall.side = side;
+    wall.name = "wall " + std::to_string(wall_count());
     impl_->walls.push_back(std::move(wall));
     return wall_count() - 1;
 }
@@ -120,8 +121,23 @@ int FluidWorld::add_body(const TriangleMesh& closed_about_center_of_mass)
     require(!closed_about_center_of_mass.empty(), "a body needs a closed mesh");
     BodySurface body;
     body.mesh = closed_about_center_of_mass;
+    body.name = "body " + std::to_string(body_count());
     impl_->bodies.push_back(std::move(body));
     return body_count() - 1;
+}
+
+void FluidWorld::name_wall(int wall, const std::string& name)
+{
+    require(wall >= 0 && wall < wall_count(), "no wall has this number", wall);
+    require(!impl_->prepared, "walls must be named before the first step");
+    impl_->walls[static_cast<std::size_t>(wall)].name = name;
+}
+
+void FluidWorld::name_body(int body, const std::string& name)
+{
+    require(body >= 0 && body < body_count(), "no body has this number", body);
+    require(!impl_->prepared, "bodies must be named before the first step");
+    impl_->bodies[static_cast<std::size_t>(body)].name = name;
 }
 
 void FluidWorld::prepare(Bodies& bodies)

@@ -15,12 +15,15 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <span>
+#include <string>
 
 namespace flotsam {
 
 /// A wall: a fixed surface with water on one side (or both).
 struct Wall {
     TriangleMesh mesh;
+    std::string name; ///< in notes
     WallSide side = WallSide::automatic;
     std::optional<Aabb> box;       ///< of a box wall
     std::array<bool, 6> open = {}; ///< of a box wall: -x +x -y +y -z +z
@@ -30,6 +33,7 @@ struct Wall {
 /// A body's surface about its centre of mass.
 struct BodySurface {
     TriangleMesh mesh;
+    std::string name; ///< in notes
     std::unique_ptr<SurfaceQuery> query;
 };
 
@@ -122,6 +126,8 @@ struct FluidWorld::Impl {
     enum class Readable { any, free, bulk };
     [[nodiscard]] Readable readable(std::size_t i) const;
     [[nodiscard]] double gauge_pressure(std::size_t i) const;
+    [[nodiscard]] bool line_passes_body(std::span<const BodyState> at, double x, double y, double away) const;
+    [[nodiscard]] bool touches_body(std::span<const BodyState> at, const Vec3d& point, double away) const;
 
     // prepare.cpp
     void prepare(Bodies& port);

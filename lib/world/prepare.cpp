@@ -175,11 +175,11 @@ void FluidWorld::Impl::sample_surfaces()
         sampling.solid = side == WallSide::inside    ? Solid::outside
                          : side == WallSide::outside ? Solid::inside
                                                      : Solid::both;
-        add(sample_surface(*walls[k].query, sampling), k, "wall " + std::to_string(k));
+        add(sample_surface(*walls[k].query, sampling), k, walls[k].name);
     }
     sampling.solid = SurfaceSampleSettings::Solid::inside;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
-        add(sample_surface(*bodies[k].query, sampling), walls.size() + k, "body " + std::to_string(k));
+        add(sample_surface(*bodies[k].query, sampling), walls.size() + k, bodies[k].name);
     }
 }
 

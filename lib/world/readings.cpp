@@ -137,41 +137,70 @@ std::optional<double> FluidWorld::level_at(double x, double y) const
     return std::nullopt;
 }
 
+/// Whether the vertical line through (x, y) passes a body nearer than `away` spacings; by circles around the bodies, of
+/// 0.7 of their radius for the smallest distances.
+bool FluidWorld::Impl::line_passes_body(std::span<const BodyState> at, double x, double y, double away) const
+{
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        const Aabb box = bodies[k].query->bounds();
+        Vec3d corner = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs());
+        if (settings.dimensions == 2) corner.y() = 0.0;
+        const double radius = corner.norm();
+        const Vec3d& c = at[k].pose.position;
+        const double reach = (away > 1.0 ? radius : 0.7 * radius) + away * spacing();
+        if (std::hypot(x - c.x(), settings.dimensions == 2 ? 0.0 : y - c.y()) < reach) return true;
+    }
+    return false;
+}
+
+/// Whether a body's surface is nearer than `away` spacings.
+bool FluidWorld::Impl::touches_body(std::span<const BodyState> at, const Vec3d& point, double away) const
+{
+    const double reach = away * spacing();
+    for (std::size_t k = 0; k < at.size(); ++k) {
+        const SurfaceQuery& query = *bodies[k].query;
+        const Vec3d local = at[k].pose.to_body(point);
+        if (query.bounds().inflated(reach).contains(local) && query.signed_distance(local) < reach) return true;
+    }
+    return false;
+}
+
 std::optional<double> FluidWorld::waterline(std::span<const BodyState> states) const
 {
     const FluidState& fluid = impl_->fluid;
     if (fluid.size() == 0) return std::nullopt;
     Aabb around;
     for (const Vec4& p : fluid.position) around.extend(p.head<3>().cast<double>());
-    const double d = impl_->spacing();
     const bool plane = impl_->settings.dimensions == 2;
-    // Away from bodies first; in a narrow tank, nearer.
-    for (const double away : {4.0, 2.0, 1.0}) {
-        std::vector<double> levels;
-        const int nx = plane ? 48 : 12, ny = plane ? 1 : 12;
+    std::vector<double> levels;
+    const auto median = [&] {
+        const auto middle = levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2);
+        std::nth_element(levels.begin(), middle, levels.end());
+        return *middle;
+    };
+    // Under a body the level is its underside, which it touches.
+    const auto sound = [&](int nx, int ny, double clear, const auto& is_line_taken) {
+        levels.clear();
         for (int ix = 0; ix < nx; ++ix) {
             for (int iy = 0; iy < ny; ++iy) {
-                const Vec3d size = around.size();
-                const double x = around.min.x() + (ix + 0.5) / nx * size.x();
-                const double y = plane ? 0.0 : around.min.y() + (iy + 0.5) / ny * size.y();
-                const auto near_body = [&](std::size_t k) {
-                    const Aabb box = impl_->bodies[k].query->bounds();
-                    const double radius = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
-                    const Vec3d& c = states[k].pose.position;
-                    return std::hypot(x - c.x(), plane ? 0.0 : y - c.y()) <
-                           (away > 1.0 ? radius : 0.7 * radius) + away * d;
-                };
-                bool taken = false;
-                for (std::size_t k = 0; k < states.size() && !taken; ++k) taken = near_body(k);
-                if (taken) continue;
-                if (const auto level = level_at(x, y)) levels.push_back(*level);
+                const double x = around.min.x() + (ix + 0.5) / nx * around.size().x();
+                const double y = plane ? 0.0 : around.min.y() + (iy + 0.5) / ny * around.size().y();
+                if (is_line_taken(x, y)) continue;
+                const auto level = level_at(x, y);
+                if (level && !impl_->touches_body(states, Vec3d(x, y, *level), clear)) levels.push_back(*level);
             }
         }
-        if (levels.size() >= 4) {
-            std::nth_element(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2),
-                             levels.end());
-            return levels[levels.size() / 2];
-        }
+    };
+    // Away from bodies first; in a narrow tank, nearer.
+    for (const double away : {4.0, 2.0, 1.0}) {
+        sound(plane ? 48 : 12, plane ? 1 : 12, 1.0,
+              [&](double x, double y) { return impl_->line_passes_body(states, x, y, away); });
+        if (levels.size() >= 4) return median();
+    }
+    // Circles around the bodies cover the whole tank: what lies open between them.
+    for (const double clear : {1.0, 0.5}) {
+        sound(plane ? 192 : 32, plane ? 1 : 32, clear, [](double, double) { return false; });
+        if (!levels.empty()) return median();
     }
     return std::nullopt;
 }

@@ -66,6 +66,9 @@ class FluidWorld {
     int add_box_wall(const Aabb& box, const std::vector<std::string>& open = {});
     /// A body as a closed mesh about its centre of mass; returns its number, the one it has in the Bodies port.
     int add_body(const TriangleMesh& closed_about_center_of_mass);
+    /// What notes call a wall or a body; else they say "wall 0", "body 0".
+    void name_wall(int wall, const std::string& name);
+    void name_body(int body, const std::string& name);
     /// Cuts, samples and relaxes now rather than in the first step; repeated calls do nothing.
     void prepare(Bodies& bodies);
 
@@ -95,7 +98,8 @@ class FluidWorld {
     /// Height [m] of the water's surface on the vertical line through (x, y): where the smoothed volume fraction falls
     /// through 1/2; nothing where the line meets no water.
     [[nodiscard]] std::optional<double> level_at(double x, double y) const;
-    /// Height [m] of the undisturbed water: median of levels taken away from the bodies (`states`: where they are).
+    /// Height [m] of the undisturbed water: median of levels taken away from the bodies (`states`: where they are), or,
+    /// where bodies leave no room for that, of what is open between them; nothing where there is no open water.
     [[nodiscard]] std::optional<double> waterline(std::span<const BodyState> states) const;
     /// What prepare noticed, a sentence each: fluid cut by bodies, thin solids sampled in one layer, ...
     [[nodiscard]] const std::vector<std::string>& notes() const;

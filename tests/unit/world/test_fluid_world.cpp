@@ -255,6 +255,49 @@ TEST_CASE("fluid that lies in a body is cut and noted", "[world]")
     CHECK(fluid.notes()[0] == "25 of 300 fluid particles lay inside walls or bodies and were cut away");
 }
 
+TEST_CASE("notes call walls and bodies by their names", "[world]")
+{
+    FluidWorld fluid = tank(plane());
+    const Vec3d edges(0.1, 1.0, 0.01);
+    fluid.add_body(tessellate(BoxShape{edges}, kSpacing));
+    fluid.name_body(fluid.add_body(tessellate(BoxShape{edges}, kSpacing)), "the sheet");
+    CHECK_THROWS_AS(fluid.name_body(2, "nobody"), std::invalid_argument);
+    CHECK_THROWS_AS(fluid.name_wall(1, "nothing"), std::invalid_argument);
+    fluid.name_wall(0, "the tank");
+    FreeBodies bodies({free_box(edges, 500.0, Vec3d(0.2, 0, 0.4)), free_box(edges, 500.0, Vec3d(0.2, 0, 0.5))});
+    fluid.prepare(bodies);
+    REQUIRE(fluid.notes().size() == 2);
+    CHECK(fluid.notes()[0].rfind("body 0 is thinner", 0) == 0);
+    CHECK(fluid.notes()[1].rfind("the sheet is thinner", 0) == 0);
+    CHECK_THROWS_AS(fluid.name_body(0, "late"), std::invalid_argument);
+}
+
+TEST_CASE("a tank crowded with bodies has a water line where it is open", "[world]")
+{
+    // Two boxes that leave gaps of three spacings; circles around them cover the whole tank.
+    FluidWorld fluid = tank(plane());
+    const Vec3d edges(0.11, 1.0, 0.3);
+    for (int k = 0; k < 2; ++k) fluid.add_body(tessellate(BoxShape{edges}, kSpacing));
+    FreeBodies bodies({free_box(edges, 500.0, Vec3d(0.115, 0, 0.3)), free_box(edges, 500.0, Vec3d(0.285, 0, 0.3))});
+    fluid.prepare(bodies);
+    std::vector<BodyState> states(2);
+    bodies.read(0.0, states);
+    REQUIRE(fluid.waterline(states).has_value());
+    CHECK(*fluid.waterline(states) == Approx(kDepth).margin(0.5 * kSpacing));
+}
+
+TEST_CASE("water under a lid has no water line", "[world]")
+{
+    FluidWorld fluid = tank(plane());
+    const Vec3d edges(kWidth, 1.0, 0.1);
+    fluid.add_body(tessellate(BoxShape{edges}, kSpacing));
+    FreeBodies bodies({free_box(edges, 500.0, Vec3d(0.5 * kWidth, 0, kDepth + 0.5 * edges.z()))});
+    fluid.prepare(bodies);
+    std::vector<BodyState> states(1);
+    bodies.read(0.0, states);
+    CHECK_FALSE(fluid.waterline(states));
+}
+
 TEST_CASE("the side of a wall is found from the fluid", "[world]")
 {
     FluidWorldSettings settings;
