@@ -51,8 +51,7 @@ void check_file(const path& file)
     if (!std::filesystem::exists(status)) refuse(file, "there is no such file");
     if (!std::filesystem::is_regular_file(status)) refuse(file, "it is not a file");
     const std::string extension = extension_of(file);
-    if (std::find(kFormats.begin(), kFormats.end(), extension) == kFormats.end())
-        refuse(file, "its name must end in .obj, .stl, .ply, .dae, .gltf or .glb");
+    if (!is_mesh_file_name(file)) refuse(file, "its name must end in .obj, .stl, .ply, .dae, .gltf or .glb");
     const std::string content = content_of(file);
     if (content.empty()) refuse(file, "it is empty");
     std::string fault;
@@ -154,6 +153,11 @@ Vec3d turned_up(const Vec3d& p, MeshFileOptions::UpAxis up)
 }
 
 } // namespace
+
+bool is_mesh_file_name(const path& file)
+{
+    return std::find(kFormats.begin(), kFormats.end(), extension_of(file)) != kFormats.end();
+}
 
 TriangleMesh load_mesh(const path& file, const MeshFileOptions& options)
 {

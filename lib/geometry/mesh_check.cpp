@@ -100,7 +100,7 @@ class MeshChecker {
         if (!options_.must_be_closed || spacing == 0.0) return;
         if (size.maxCoeff() < 2.0 * spacing)
             refuse("measures ", size.x(), " x ", size.y(), " x ", size.z(), " m, but particles with a spacing of ",
-                   spacing, " m resolve bodies of at least ", 2.0 * spacing, " m only");
+                   spacing, " m resolve bodies of at least ", 2.0 * spacing, " m only; is it in metres?");
         if (size.minCoeff() < spacing)
             note("its smallest extent, ", size.minCoeff(), " m, is below the particle spacing of ", spacing, " m");
     }

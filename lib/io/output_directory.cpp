@@ -37,7 +37,8 @@ void require_replaceable(const fs::path& target)
     std::error_code error;
     const fs::file_status status = fs::status(target, error);
     if (status.type() == fs::file_type::not_found) return;
-    check(status.type() == fs::file_type::none ? error : std::error_code{}, "look at " + target.string());
+    if (status.type() == fs::file_type::none) // a name that is too long, or behind a closed door
+        throw InputError("cannot look at the output directory " + target.string() + ": " + error.message());
     if (!fs::is_directory(status)) {
         throw InputError("the output directory " + target.string() + " is a file; give the name of a directory");
     }

@@ -12,6 +12,9 @@ struct MeshFileOptions {
     enum class UpAxis { z, y, x } up = UpAxis::z; ///< axis of the file that becomes +z; z: as it is
 };
 
+/// Whether the file is called like a mesh file that load_mesh reads.
+[[nodiscard]] bool is_mesh_file_name(const std::filesystem::path& file);
+
 /// Reads OBJ, STL, PLY, DAE, glTF or GLB through assimp; the node transforms of the file are applied, nothing else
 /// is: no unit or axis conversion beyond `options`. Polygons become triangles, points and lines are dropped, several
 /// parts stay several parts. Vertices are not welded and nothing is checked beyond what reading needs: see check_mesh.

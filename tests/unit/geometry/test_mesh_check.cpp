@@ -288,9 +288,9 @@ TEST_CASE("a body must be larger than the particles resolve", "[geometry][mesh_c
     const MeshCheckReport report = check_mesh(plate, {.name = "plate", .particle_spacing = 0.02});
     CHECK(report.notes ==
           std::vector<std::string>{"plate: its smallest extent, 0.01 m, is below the particle spacing of 0.02 m"});
-    CHECK(
-        refusal(plate, {.name = "plate", .particle_spacing = 0.6}) ==
-        "plate measures 1 x 0.5 x 0.01 m, but particles with a spacing of 0.6 m resolve bodies of at least 1.2 m only");
+    CHECK(refusal(plate, {.name = "plate", .particle_spacing = 0.6}) ==
+          "plate measures 1 x 0.5 x 0.01 m, but particles with a spacing of 0.6 m resolve bodies of at least 1.2 m "
+          "only; is it in metres?");
     CHECK(check_mesh(plate, {.must_be_closed = false, .particle_spacing = 0.6}).notes.empty());
     CHECK_THROWS_AS(check_mesh(plate, {.particle_spacing = -1.0}), std::invalid_argument);
     plate.part_of_triangle = {0, 1};

@@ -122,7 +122,8 @@ TEST_CASE("a target that cannot be made is refused in a sentence", "[io][output]
     CHECK_THROWS_AS(OutputDirectory("/"), InputError);
     CHECK_THROWS_AS(OutputDirectory(scratch / "file/out"), InputError);
     CHECK_THROWS_WITH(OutputDirectory(scratch / "file/out"), Catch::Contains("file/out: Not a directory"));
-    CHECK_THROWS_AS(OutputDirectory("/proc/out"), InputError); // nobody may write there
+    CHECK_THROWS_AS(OutputDirectory("/proc/out"), InputError);                     // nobody may write there
+    CHECK_THROWS_AS(OutputDirectory(scratch / std::string(300, 'x')), InputError); // longer than names can be
     CHECK(scratch.entries() == 1);
 }
 
