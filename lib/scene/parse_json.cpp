@@ -2,6 +2,7 @@
 #include "scene/strict_json.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 
 namespace flotsam::scene {
@@ -54,8 +55,14 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
         const std::size_t last_newline = before.rfind('\n');
         const std::size_t column = before.size() - (last_newline == before.npos ? 0 : last_newline + 1);
         error.overflow = dynamic_cast<const nlohmann::detail::out_of_range*>(&what) != nullptr;
-        error.sentence = "line " + std::to_string(line) + ", column " + std::to_string(column) + ": " +
-                         (error.overflow ? "the number " + last_token + " is not finite" : reason(what.what()));
+        const std::string word = word_before(before.size());
+        error.sentence = "line " + std::to_string(line) + ", column " + std::to_string(column) + near() + ": ";
+        if (error.overflow)
+            error.sentence += "the number " + last_token + " is not finite";
+        else if (is_no_finite_number(word))
+            error.sentence += "not JSON: numbers must be finite, given " + word;
+        else
+            error.sentence += reason(what.what());
         return false;
     }
 
@@ -66,6 +73,37 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
         const std::size_t column = what.find("column ");
         const std::size_t colon = what.find(": ", column == what.npos ? 0 : column);
         return "not JSON: " + std::string(colon == what.npos ? what : what.substr(colon + 2));
+    }
+
+    /// The bare word that the text of this size ends in the middle of.
+    std::string word_before(std::size_t size) const
+    {
+        constexpr std::string_view kEnds = " \t\r\n,:[]{}\"";
+        const std::size_t before = size == 0 ? text_.npos : text_.find_last_of(kEnds, size - 1);
+        const std::size_t begin = before == text_.npos ? 0 : before + 1;
+        const std::size_t end = std::min(text_.find_first_of(kEnds, begin), text_.size());
+        return std::string(text_.substr(begin, std::min<std::size_t>(end - begin, 20)));
+    }
+
+    static bool is_no_finite_number(std::string word)
+    {
+        for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        if (word.starts_with('-') || word.starts_with('+')) word.erase(0, 1);
+        return word == "nan" || word == "inf" || word == "infinity";
+    }
+
+    /// The value that was read last or is read now.
+    std::string near() const
+    {
+        if (open_.empty()) return {};
+        std::string place = path();
+        if (!open_.back()->is_array())
+            place += keys_.back();
+        else if (!place.empty())
+            place.pop_back();
+        if (open_.back()->is_array()) place += "[" + std::to_string(open_.back()->size()) + "]";
+        if (place.ends_with('.')) place.pop_back();
+        return place.empty() ? place : ", near " + place;
     }
 
     std::string path() const

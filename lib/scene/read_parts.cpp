@@ -1,21 +1,24 @@
 #include "scene/read_parts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace flotsam::scene {
 namespace {
 
+constexpr int kMostPixels = 8192; ///< wide or high; such a picture takes half a minute
+
 Quatd rotation_from_degrees(const Vec3d& degrees)
 {
-    const Vec3d radians = degrees * (std::numbers::pi / 180.0);
-    const double angle = radians.norm();
-    return angle > 0.0 ? Quatd(Eigen::AngleAxisd(angle, radians / angle)) : Quatd::Identity();
+    const double angle = degrees.norm();
+    const double turned = std::remainder(angle, 360.0) * (std::numbers::pi / 180.0); // exact, also of many turns
+    return angle > 0.0 ? Quatd(Eigen::AngleAxisd(turned, degrees / angle)) : Quatd::Identity();
 }
 
-Vec3d read_rotation(const JsonNode& node, const ReadContext& context, const char* unit)
+Vec3d read_rotation(const JsonNode& node, const ReadContext& context, Allowed allowed)
 {
-    const std::vector<double> v = node.numbers({3}, "a list of 3 numbers", {Allowed::Range::any, unit});
+    const std::vector<double> v = node.numbers({3}, "a list of 3 numbers", allowed);
     if (context.dimensions == 2 && (v[0] != 0.0 || v[2] != 0.0))
         node.refuse_value("must be [0, angle, 0] in two dimensions, where all turning is about y");
     return {v[0], v[1], v[2]};
@@ -112,11 +115,13 @@ void read_motion(const JsonObject& object, const ReadContext& context, SceneBody
     if (const auto node = object.find("motion"))
         body.motion =
             std::array{Motion::dynamic, Motion::fixed, Motion::moving}[node->one_of({"dynamic", "fixed", "moving"})];
-    if (const auto node = object.find("velocity")) body.velocity = read_vector(*node, context, {.unit = "m/s"});
+    if (const auto node = object.find("velocity")) body.velocity = read_vector(*node, context, kSpeed);
     if (const auto node = object.find("angular_velocity"))
-        body.angular_velocity = read_rotation(*node, context, "rad/s");
+        body.angular_velocity = read_rotation(*node, context, {.unit = "rad/s", .most = 1e4});
     if (body.motion == Motion::fixed && !(body.velocity.isZero(0.0) && body.angular_velocity.isZero(0.0)))
         object.node().refuse("is fixed and has a velocity; \"motion\": \"moving\" moves at a given velocity");
+    if (body.motion == Motion::moving && !object.has("velocity") && !object.has("angular_velocity"))
+        object.node().refuse("is moving and must have \"velocity\" or \"angular_velocity\"");
     body.lock = read_lock(object);
     refuse_idle_locks(object, body);
 }
@@ -136,7 +141,8 @@ SceneCamera read_camera(const JsonNode& node, const ReadContext& context)
     SceneCamera camera;
     camera.position = read_vector(object.required("position"), space, {.unit = "m"});
     camera.look_at = read_vector(object.required("look_at"), space, {.unit = "m"});
-    if (camera.position == camera.look_at) node.refuse("must have position and look_at apart from each other");
+    if (!((camera.position - camera.look_at).norm() > 1e-6)) // [m]
+        node.refuse("must have position and look_at apart from each other");
     object.read("fov_deg", camera.fov_deg, {Allowed::Range::positive, "degrees"});
     if (!(camera.fov_deg < 170.0)) object.required("fov_deg").refuse_value("must be a number below 170 [degrees]");
     return camera;
@@ -147,10 +153,9 @@ std::optional<ScenePictures> read_pictures(const JsonNode& node, const ReadConte
     if (node.json().is_boolean()) return node.boolean() ? std::optional(ScenePictures()) : std::nullopt;
     const JsonObject object(node, {"width", "height", "every", "camera"});
     ScenePictures pictures;
-    if (const auto width = object.find("width")) pictures.width = width->integer(16);
-    if (const auto height = object.find("height")) pictures.height = height->integer(16);
-    if (pictures.width > 16384 || pictures.height > 16384) node.refuse("must be at most 16384 pixels wide and high");
-    if (const auto every = object.find("every")) pictures.every = every->integer(1);
+    if (const auto width = object.find("width")) pictures.width = width->integer(16, kMostPixels);
+    if (const auto height = object.find("height")) pictures.height = height->integer(16, kMostPixels);
+    if (const auto every = object.find("every")) pictures.every = every->integer(1, 1000000);
     if (const auto camera = object.find("camera")) pictures.camera = read_camera(*camera, context);
     return pictures;
 }
@@ -187,7 +192,7 @@ Pose read_pose(const JsonObject& object, const ReadContext& context)
     Pose pose;
     if (const auto node = object.find("position")) pose.position = read_vector(*node, context, {.unit = "m"});
     if (const auto node = object.find("rotation_deg"))
-        pose.orientation = rotation_from_degrees(read_rotation(*node, context, "degrees"));
+        pose.orientation = rotation_from_degrees(read_rotation(*node, context, {.unit = "degrees"}));
     return pose;
 }
 

@@ -15,6 +15,9 @@ struct ReadContext {
 [[nodiscard]] SceneWall read_wall(const JsonNode& node, const ReadContext& context);
 [[nodiscard]] SceneOutput read_output(const JsonNode& node, const ReadContext& context);
 
+/// What is faster is no water; a unit was misread.
+inline constexpr Allowed kSpeed{.unit = "m/s", .most = 1000.0};
+
 /// [x, y, z]; in 2-D also [x, z], and y must be 0.
 [[nodiscard]] Vec3d read_vector(const JsonNode& node, const ReadContext& context, Allowed allowed = {});
 /// "min" and "max" of an object, each coordinate of max above that of min. In 2-D y goes from -1/2 to 1/2 m, so that

@@ -13,6 +13,8 @@ namespace flotsam {
 namespace scene {
 namespace {
 
+constexpr std::size_t kLargestFile = std::size_t{16} << 20; // [bytes]
+
 /// Beyond these somebody misread a unit, and the run would not end.
 constexpr double kMostSteps = 1e9;
 constexpr double kMostFrames = 1e6;
@@ -41,7 +43,8 @@ PressureSettings read_pressure(const JsonNode& node)
             std::array{Settings::Coupling::strong, Settings::Coupling::weak}[coupling->one_of({"strong", "weak"})];
     object.read("tolerance", settings.tolerance, kPositive);
     object.read("velocity_tolerance", settings.velocity_tolerance, kPositive);
-    if (const auto iterations = object.find("max_iterations")) settings.max_iterations = iterations->integer(1);
+    if (const auto iterations = object.find("max_iterations"))
+        settings.max_iterations = iterations->integer(1, 1000000);
     return settings;
 }
 
@@ -50,11 +53,12 @@ SceneFluid read_fluid(const JsonNode& node, const ReadContext& context)
     const JsonObject object(node, {"name", "density", "kinematic_viscosity", "blocks", "meshes"});
     SceneFluid fluid;
     if (const auto name = object.find("name")) fluid.name = name->text();
-    object.read("density", fluid.density, {Allowed::Range::positive, "kg/m^3"});
-    object.read("kinematic_viscosity", fluid.kinematic_viscosity, {Allowed::Range::not_negative, "m^2/s"});
+    object.read("density", fluid.density, {Allowed::Range::positive, "kg/m^3", 1e-3, 1e6});
+    object.read("kinematic_viscosity", fluid.kinematic_viscosity,
+                {.range = Allowed::Range::not_negative, .unit = "m^2/s", .most = 1e3});
     const auto velocity_of = [&](const JsonObject& part) {
         const auto velocity = part.find("velocity");
-        return velocity ? read_vector(*velocity, context, {.unit = "m/s"}) : Vec3d(Vec3d::Zero());
+        return velocity ? read_vector(*velocity, context, kSpeed) : Vec3d(Vec3d::Zero());
     };
     for (const JsonNode& entry : object.list("blocks")) {
         const JsonObject block(entry, {"min", "max", "velocity"});
@@ -112,8 +116,11 @@ void add_name(std::set<std::string>& names, const std::string& name, const JsonN
 {
     if (!names.insert(name).second)
         node.child("name").refuse_value("must differ from the names of all other bodies and probes");
-    if (name.find_first_of(",\"\n\r") != std::string::npos)
-        node.child("name").refuse_value("must be free of commas, quotes and line breaks");
+    const auto breaks_a_table = [](unsigned char c) { return c == ',' || c == '"' || c < 0x20 || c == 0x7f; };
+    if (std::any_of(name.begin(), name.end(), breaks_a_table))
+        node.child("name").refuse_value("must be free of commas, quotes, tabs, line breaks and the like");
+    if (name.find_first_not_of(' ') == std::string::npos || name.front() == ' ' || name.back() == ' ')
+        node.child("name").refuse_value("must not begin or end with a space");
 }
 
 void refuse_joints(const JsonObject& root)
@@ -124,24 +131,30 @@ void refuse_joints(const JsonObject& root)
 
 void read_time(const JsonObject& root, SceneFile& scene)
 {
-    scene.duration = root.required("duration").number({Allowed::Range::positive, "s"});
-    const auto node = root.find("time_step");
-    if (!node) return;
-    const JsonObject time_step(*node, {"max", "cfl"});
-    time_step.read("max", scene.max_time_step, {Allowed::Range::positive, "s"});
-    time_step.read("cfl", scene.cfl, kPositive);
-    if (!(scene.cfl <= 1.0)) time_step.required("cfl").refuse_value("must be a number in (0, 1]");
-    if (!(scene.max_time_step * kMostSteps >= scene.duration))
-        time_step.required("max").refuse_value("must be at least a billionth of the duration");
+    const JsonNode duration = root.required("duration");
+    scene.duration = duration.number({Allowed::Range::positive, "s"});
+    std::optional<JsonNode> max;
+    if (const auto node = root.find("time_step")) {
+        const JsonObject time_step(*node, {"max", "cfl"});
+        time_step.read("max", scene.max_time_step, {Allowed::Range::positive, "s"});
+        time_step.read("cfl", scene.cfl);
+        if (!(scene.cfl > 0.0 && scene.cfl <= 1.0))
+            time_step.required("cfl").refuse_value("must be a number > 0 and <= 1");
+        max = time_step.find("max");
+    }
+    if (scene.max_time_step * kMostSteps >= scene.duration) return;
+    if (max) max->refuse_value("must be at least a billionth of the duration");
+    duration.refuse_value("must be at most a billion times time_step.max");
 }
 
 void refuse_too_many_frames(const JsonObject& root, const SceneFile& scene)
 {
-    if (scene.duration * scene.output.frames_per_second <= kMostFrames) return;
-    root.required("duration")
-        .refuse_value("must have at most a million frames, of " +
-                      std::to_string(std::llround(std::min(scene.output.frames_per_second, 1e15))) +
-                      " output.frames_per_second");
+    const double frames = scene.duration * scene.output.frames_per_second;
+    if (frames <= kMostFrames) return;
+    std::ostringstream sentence;
+    sentence << "would have " << frames << " frames (duration times output.frames_per_second), "
+             << "and at most a million frames are allowed";
+    root.node().refuse(sentence.str());
 }
 
 SceneFile read_root(const Json& document, const std::filesystem::path& file)
@@ -153,12 +166,13 @@ SceneFile read_root(const Json& document, const std::filesystem::path& file)
     SceneFile scene;
     scene.file = file;
     if (const auto node = root.find("dimensions")) {
-        scene.dimensions = node->integer(2);
-        if (scene.dimensions > 3) node->refuse_value("must be 2 or 3");
+        if (node->json() != 2 && node->json() != 3) node->refuse_value("must be 2 or 3");
+        scene.dimensions = node->integer(2, 3);
     }
     const ReadContext context{scene.dimensions, file.parent_path()};
     scene.particle_spacing = root.required("particle_spacing").number({Allowed::Range::positive, "m"});
-    if (const auto node = root.find("gravity")) scene.gravity = read_vector(*node, context, {.unit = "m/s^2"});
+    if (const auto node = root.find("gravity"))
+        scene.gravity = read_vector(*node, context, {.unit = "m/s^2", .most = 1e4});
     read_time(root, scene);
     if (const auto node = root.find("pressure")) scene.pressure = read_pressure(*node);
     scene.fluid = read_the_fluid(root.required("fluids"), context);
@@ -192,15 +206,20 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& file,
 
 SceneFile read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides)
 {
+    if (file.empty()) throw InputError("the scene file has an empty name");
     std::error_code error;
     if (!std::filesystem::exists(file, error)) throw InputError(file.string() + ": there is no such scene file");
     if (std::filesystem::is_directory(file, error))
         throw InputError(file.string() + ": is a directory, and must be a scene file");
     std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
     if (!stream) throw InputError(file.string() + ": the scene file cannot be read");
-    return parse_scene(text.str(), file, overrides);
+    std::string text(scene::kLargestFile + 1, '\0'); // a device may have no end
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (stream.bad()) throw InputError(file.string() + ": the scene file cannot be read");
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > scene::kLargestFile)
+        throw InputError(file.string() + ": is larger than 16 MB, which no scene file is");
+    return parse_scene(text, file, overrides);
 }
 
 } // namespace flotsam

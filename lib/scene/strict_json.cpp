@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace flotsam::scene {
 namespace {
@@ -39,11 +40,30 @@ std::string range_words(Allowed allowed, const char* noun)
     return words;
 }
 
-bool within(double value, Allowed allowed)
+bool has_sign(double value, Allowed allowed)
 {
     if (!std::isfinite(value)) return false;
     if (allowed.range == Allowed::Range::positive) return value > 0.0;
     return allowed.range == Allowed::Range::any || value >= 0.0;
+}
+
+bool is_within(double value, Allowed allowed)
+{
+    return std::abs(value) <= allowed.most && (allowed.range != Allowed::Range::positive || value >= allowed.least);
+}
+
+std::string limit_words(Allowed allowed)
+{
+    std::ostringstream words;
+    words << "a number ";
+    if (allowed.range == Allowed::Range::positive && allowed.least > 0.0)
+        words << "from " << allowed.least << " to " << allowed.most;
+    else if (allowed.range == Allowed::Range::any)
+        words << "from " << -allowed.most << " to " << allowed.most;
+    else
+        words << "of at most " << allowed.most;
+    if (*allowed.unit) words << " [" << allowed.unit << "]";
+    return words.str();
 }
 
 std::string joined_words(std::initializer_list<const char*> words, const char* last)
@@ -95,16 +115,17 @@ std::vector<JsonNode> JsonNode::entries() const
 
 double JsonNode::number(Allowed allowed) const
 {
-    if (!value_->is_number() || !within(value_->get<double>(), allowed))
+    if (!value_->is_number() || !has_sign(value_->get<double>(), allowed))
         refuse_value("must be " + range_words(allowed, "a number"));
+    if (!is_within(value_->get<double>(), allowed)) refuse_value("must be " + limit_words(allowed));
     return value_->get<double>();
 }
 
-int JsonNode::integer(int at_least) const
+int JsonNode::integer(int at_least, int at_most) const
 {
     const double value = value_->is_number() ? value_->get<double>() : std::nan("");
-    if (!(value >= at_least && value <= 1e9 && value == std::floor(value)))
-        refuse_value("must be a whole number >= " + std::to_string(at_least));
+    if (!(value >= at_least && value <= at_most && value == std::floor(value)))
+        refuse_value("must be a whole number from " + std::to_string(at_least) + " to " + std::to_string(at_most));
     return static_cast<int>(value);
 }
 

@@ -23,10 +23,12 @@ void apply_override(Json& document, const std::string& path_and_value, const std
 /// Of the candidates the one with the smallest edit distance to `word`.
 [[nodiscard]] std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 
-/// What a number may be.
+/// What a number may be. Nothing in a scene is larger than `most` unless its unit was misread.
 struct Allowed {
     enum class Range { any, positive, not_negative } range = Range::any;
     const char* unit = "";
+    double least = 0.0; ///< where it is > 0
+    double most = 1e9;  ///< in magnitude
 };
 inline constexpr Allowed kPositive{Allowed::Range::positive, ""};
 
@@ -47,7 +49,7 @@ class JsonNode {
     [[nodiscard]] JsonNode child(const std::string& key) const;
     [[nodiscard]] std::vector<JsonNode> entries() const; ///< of a list
     [[nodiscard]] double number(Allowed allowed = {}) const;
-    [[nodiscard]] int integer(int at_least) const;
+    [[nodiscard]] int integer(int at_least, int at_most) const;
     [[nodiscard]] bool boolean() const;
     [[nodiscard]] std::string text() const; ///< not empty
     [[nodiscard]] std::vector<double> numbers(std::initializer_list<std::size_t> lengths, const char* of,
