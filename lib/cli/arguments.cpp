@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <charconv>
 #include <iostream>
 
 namespace flotsam::cli {
@@ -25,9 +26,18 @@ is replaced when the run is done.
 
 Exit codes: 0 done, 1 the run failed, 2 the input was refused.)";
 
-void add_scene(CLI::App& command, Arguments& arguments)
+std::string thread_fault(std::string& word)
 {
-    command.add_option("SCENE", arguments.scene, "Scene file (JSON)")->required();
+    int threads = 0;
+    const auto [end, failed] = std::from_chars(word.data(), word.data() + word.size(), threads);
+    const bool is_whole = failed == std::errc() && end == word.data() + word.size();
+    if (is_whole && threads >= 1 && threads <= 1024) return {};
+    return "must be a whole number from 1 to 1024, given \"" + word + "\"";
+}
+
+void add_scene(CLI::App& command, Arguments& arguments, const char* file)
+{
+    command.add_option("SCENE", arguments.scene, file)->required();
     command
         .add_option("--set", arguments.overrides,
                     "Replaces a value of the scene: a path with dots, indices or names, and a value in JSON (or plain "
@@ -40,12 +50,12 @@ void add_scene(CLI::App& command, Arguments& arguments)
 void add_run(CLI::App& app, Arguments& arguments)
 {
     CLI::App* run = app.add_subcommand("run", "Run a scene and record it");
-    add_scene(*run, arguments);
+    add_scene(*run, arguments, "Scene file (JSON)");
     run->add_option("--out", arguments.out, "Directory of the results [out/ and the scene's name]")->type_name("DIR");
     run->add_option("--threads", arguments.threads,
-                    "Threads to use; 0: all the machine has. Results do not depend on it")
-        ->check(CLI::Range(0, 1024))
-        ->capture_default_str();
+                    "Threads to use, from 1 to 1024 [all the machine has]. Results do not depend on it")
+        ->type_name("N")
+        ->check(CLI::Validator(&thread_fault, ""));
     run->add_flag("--quiet,-q", arguments.quiet, "Print nothing but errors");
     run->footer("Example:\n  flotsam run data/scenes/cube_in_tank.json --out out/cube --threads 2");
     run->callback([&arguments] { arguments.verb = Arguments::Verb::run; });
@@ -53,9 +63,11 @@ void add_run(CLI::App& app, Arguments& arguments)
 
 void add_check(CLI::App& app, Arguments& arguments)
 {
-    CLI::App* check = app.add_subcommand("check", "Say what is wrong with a scene or its meshes, without running it");
-    add_scene(*check, arguments);
-    check->footer("Example:\n  flotsam check data/scenes/harbor.json --set particle_spacing=0.01");
+    CLI::App* check = app.add_subcommand(
+        "check", "Say what is wrong with a scene and its meshes, or with a mesh, without running it");
+    add_scene(*check, arguments, "Scene file (JSON), or mesh file (OBJ, STL, PLY, DAE, glTF, GLB)");
+    check->footer("Examples:\n  flotsam check data/scenes/harbor.json --set particle_spacing=0.01\n"
+                  "  flotsam check data/meshes/hull.obj");
     check->callback([&arguments] { arguments.verb = Arguments::Verb::check; });
 }
 

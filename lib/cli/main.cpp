@@ -37,6 +37,12 @@ void run(const Arguments& arguments)
 
 void check(const Arguments& arguments)
 {
+    if (is_mesh_file_name(arguments.scene)) {
+        if (!arguments.overrides.empty())
+            throw InputError(arguments.scene.string() + ": --set changes values of scenes, and this is a mesh file");
+        print_check(std::cout, check_mesh_file(arguments.scene), arguments.scene);
+        return;
+    }
     const SceneFile scene = read_scene(arguments.scene, arguments.overrides);
     print_check(std::cout, check_scene(scene), arguments.scene);
 }

@@ -124,4 +124,14 @@ void print_check(std::ostream& out, const SceneCheck& check, const std::filesyst
     print_table(out, rows);
 }
 
+void print_check(std::ostream& out, const MeshFileCheck& check, const std::filesystem::path& mesh)
+{
+    for (const std::string& note : check.notes) out << "note: " << note << "\n";
+    const Vec3d size = check.bounds.size(), &center = check.center_of_mass;
+    out << mesh.string() << ": nothing wrong; in metres: " << check.triangles << " triangles in " << check.parts
+        << (check.parts == 1 ? " part" : " parts") << ", " << size.x() << " x " << size.y() << " x " << size.z()
+        << " m, volume " << check.volume << " m^3, centre of mass [" << center.x() << ", " << center.y() << ", "
+        << center.z() << "]\n";
+}
+
 } // namespace flotsam::cli

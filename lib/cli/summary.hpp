@@ -14,4 +14,7 @@ void print_summary(std::ostream& out, const RunReport& report, const std::filesy
 /// Notes, sizes and bodies of a scene that can be run.
 void print_check(std::ostream& out, const SceneCheck& check, const std::filesystem::path& scene);
 
+/// The same for what `check` found in a mesh file.
+void print_check(std::ostream& out, const MeshFileCheck& check, const std::filesystem::path& mesh);
+
 } // namespace flotsam::cli

@@ -1,5 +1,5 @@
-#include "flotsam/core/contracts.hpp"
 #include "scene/prepared_scene.hpp"
+#include "scene/refuse.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,7 @@ struct PlacedBody {
     Aabb reach;                 ///< of the surface, in the world
 
     /// In 2-D, where bodies are a metre long in y, all points are moved into the plane, far from the ends.
-    PlacedBody(const std::string& body_name, const PreparedBody& body, const SceneFile& scene)
-        : name("body \"" + body_name + "\""), pose(body.start), query(body.mesh)
+    PlacedBody(const PreparedBody& body, const SceneFile& scene) : name(body.name), pose(body.start), query(body.mesh)
     {
         const double edge = std::max(scene.particle_spacing, bounds(body.mesh).size().maxCoeff() / 64.0);
         for (const Vec3d& vertex : refined(body.mesh, edge).vertices) {
@@ -35,11 +34,6 @@ struct PlacedBody {
         return reach.contains(point) ? -query.signed_distance(pose.to_body(point)) : -1.0;
     }
 };
-
-[[noreturn]] void refuse(const SceneFile& scene, const std::string& body, const std::string& what)
-{
-    throw InputError(scene.file.string() + ": " + body + " " + what);
-}
 
 std::string millimetres(double metres)
 {
@@ -172,9 +166,9 @@ void check_container(const SceneFile& scene, const Tank& tank, const PlacedBody&
     const Passage out = passage_out_of(tank, body);
     if (out.depth <= tolerance) return;
     const std::string side = std::string(out.side) + (tank.closed ? "" : " side");
-    if (out.wholly) refuse(scene, body.name, "is outside the tank, beyond the " + side + " of " + tank.wall->name);
+    if (out.wholly) refuse(scene, body.name, " is outside the tank, beyond the " + side + " of " + tank.wall->name);
     refuse(scene, body.name,
-           "overlaps " + tank.wall->name + ": it reaches " + millimetres(out.depth) + " through its " + side);
+           " overlaps " + tank.wall->name + ": it reaches " + millimetres(out.depth) + " through its " + side);
 }
 
 void check_obstacle(const SceneFile& scene, const Tank& tank, const PlacedBody& body, double tolerance)
@@ -183,7 +177,7 @@ void check_obstacle(const SceneFile& scene, const Tank& tank, const PlacedBody& 
     if (tank.closed && !tank.holds_water && tank.settings->side != WallSide::both)
         for (const Vec3d& point : body.surface)
             if (tank.closed->bounds().contains(point)) depth = std::max(depth, -tank.closed->signed_distance(point));
-    if (depth > tolerance) refuse(scene, body.name, "overlaps " + tank.wall->name + " by " + millimetres(depth));
+    if (depth > tolerance) refuse(scene, body.name, " overlaps " + tank.wall->name + " by " + millimetres(depth));
 }
 
 /// Open meshes have no inside, but nothing belongs beside or below all walls.
@@ -196,7 +190,7 @@ void check_bounds_of_walls(const SceneFile& scene, const PreparedScene& prepared
     const bool beside = (body.reach.min.head<2>().array() >= walls.max.head<2>().array()).any() ||
                         (body.reach.max.head<2>().array() <= walls.min.head<2>().array()).any();
     if (beside || body.reach.max.z() <= walls.min.z())
-        refuse(scene, body.name, "is outside the tank, beside or below all walls");
+        refuse(scene, body.name, " is outside the tank, beside or below all walls");
 }
 
 // -- other bodies -------------------------------------------------------------------------------------------------
@@ -206,7 +200,7 @@ void check_pair(const SceneFile& scene, const PlacedBody& a, const PlacedBody& b
     double depth = -1.0;
     for (const Vec3d& point : a.surface) depth = std::max(depth, b.depth(point));
     for (const Vec3d& point : b.surface) depth = std::max(depth, a.depth(point));
-    if (depth > tolerance) refuse(scene, a.name, "overlaps " + b.name + " by " + millimetres(depth));
+    if (depth > tolerance) refuse(scene, a.name, " overlaps " + b.name + " by " + millimetres(depth));
 }
 
 } // namespace
@@ -215,8 +209,7 @@ void check_bodies(const SceneFile& scene, const PreparedScene& prepared)
 {
     const double tolerance = kTouching * scene.particle_spacing;
     std::vector<PlacedBody> bodies;
-    for (std::size_t k = 0; k < prepared.bodies.size(); ++k)
-        bodies.emplace_back(scene.bodies[k].name, prepared.bodies[k], scene);
+    for (const PreparedBody& body : prepared.bodies) bodies.emplace_back(body, scene);
     const std::vector<Tank> tanks = tanks_of(scene, prepared);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
         for (const Tank& tank : tanks)

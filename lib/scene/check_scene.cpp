@@ -41,14 +41,36 @@ void check_fluid(const SceneFile& scene, PreparedScene& prepared)
 {
     if (prepared.fluid_particles > kMostPointsToCount) return;
     std::vector<Vec3d> points = fluid_points(scene, prepared);
-    for (std::size_t k = 0; k < prepared.bodies.size(); ++k)
-        if (const std::size_t cut = cut_by(prepared.bodies[k], points); cut > 0)
-            prepared.notes.push_back("the fluid overlaps body \"" + scene.bodies[k].name +
-                                     "\", which cuts away about " + std::to_string(cut) + " particles");
+    for (const PreparedBody& body : prepared.bodies)
+        if (const std::size_t cut = cut_by(body, points); cut > 0)
+            prepared.notes.push_back("the fluid overlaps " + body.name + ", which cuts away about " +
+                                     std::to_string(cut) + " particles");
     prepared.fluid_particles = static_cast<double>(points.size());
     if (points.empty())
         throw InputError(scene.file.string() + ": no fluid is left within the walls and outside the bodies; "
                                                "a block must be at least a particle spacing wide");
+}
+
+void check_probes(const SceneFile& scene, PreparedScene& prepared)
+{
+    Aabb world;
+    const auto add = [&](const Aabb& box) {
+        world.extend(box.min);
+        world.extend(box.max);
+    };
+    for (const SceneBlock& block : prepared.blocks) add(block.box);
+    for (const TriangleMesh& mesh : prepared.fluid_meshes) add(bounds(mesh));
+    for (const PreparedWall& wall : prepared.walls) add(bounds(wall.mesh));
+    for (std::size_t k = 0; k < scene.probes.size(); ++k) {
+        const SceneProbe& probe = scene.probes[k];
+        const bool is_level = probe.kind == SceneProbe::Kind::level;
+        Vec3d point = probe.point;
+        if (is_level) point.z() = world.center().z();
+        if (!world.contains(point))
+            prepared.notes.push_back("probes[" + std::to_string(k) + "] (\"" + probe.name +
+                                     "\") is outside of all walls and fluid, where " +
+                                     (is_level ? "there is no level" : "the pressure is 0"));
+    }
 }
 
 } // namespace scene

@@ -17,6 +17,7 @@ struct PreparedPart {
 /// A body with its geometry. Its frame sits in the centre of mass and has the principal axes of inertia, as engines
 /// want it.
 struct PreparedBody {
+    std::string name;  ///< for sentences: bodies[0] ("crate")
     TriangleMesh mesh; ///< closed, in the body's frame
     std::vector<PreparedPart> parts;
     double volume = 0.0;           ///< [m^3]
@@ -29,7 +30,7 @@ struct PreparedBody {
 struct PreparedWall {
     TriangleMesh mesh; ///< in the world
     bool closed = false;
-    std::string name; ///< for sentences: wall 0 ("basin")
+    std::string name; ///< for sentences: walls[0] ("basin")
 };
 
 struct PreparedScene {
@@ -47,11 +48,20 @@ struct PreparedScene {
 /// holds, before it makes anything of that size.
 [[nodiscard]] PreparedScene prepare_scene(const SceneFile& scene);
 
+/// A body of the scene, its meshes loaded and checked; throws InputError.
+[[nodiscard]] PreparedBody prepare_body(const SceneFile& scene, std::size_t number, PreparedScene& prepared);
+
 /// Refuses bodies that are outside the tank or overlap a wall or each other, by an InputError.
 void check_bodies(const SceneFile& scene, const PreparedScene& prepared);
 
+/// Refuses what is so far from the origin that single precision does not resolve the spacing, by an InputError.
+void check_reach(const SceneFile& scene, const PreparedScene& prepared);
+
 /// Notes fluid that bodies cut away; refuses a scene of which no fluid is left, by an InputError.
 void check_fluid(const SceneFile& scene, PreparedScene& prepared);
+
+/// Notes probes that are outside of all walls and fluid.
+void check_probes(const SceneFile& scene, PreparedScene& prepared);
 
 /// All of the above.
 [[nodiscard]] PreparedScene prepare_and_check(const SceneFile& scene);

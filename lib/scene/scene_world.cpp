@@ -99,10 +99,9 @@ void SceneWorld::add_walls(const SceneFile& scene, const PreparedScene& prepared
 {
     for (std::size_t k = 0; k < scene.walls.size(); ++k) {
         const SceneWall& wall = scene.walls[k];
-        if (wall.mesh)
-            fluid_.add_wall(prepared.walls[k].mesh, wall.side);
-        else
-            fluid_.add_box_wall(wall.box, wall.open);
+        const int number =
+            wall.mesh ? fluid_.add_wall(prepared.walls[k].mesh, wall.side) : fluid_.add_box_wall(wall.box, wall.open);
+        fluid_.name_wall(number, prepared.walls[k].name);
         // Bullet multiplies frictions: 1 leaves a body's own against walls
         walls_.push_back(rigid_body(0.0, Vec3d::Zero(), Pose(), 1.0, add_wall_shape(wall, prepared.walls[k], shapes_)));
         world_.addRigidBody(walls_.back().get());
@@ -114,7 +113,7 @@ void SceneWorld::add_bodies(const SceneFile& scene, const PreparedScene& prepare
     for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
         bodies_.push_back(body_of(scene, scene.bodies[k], prepared.bodies[k], shapes_));
         world_.addRigidBody(bodies_.back().get());
-        coupling_->add(*bodies_.back(), prepared.bodies[k].mesh);
+        fluid_.name_body(coupling_->add(*bodies_.back(), prepared.bodies[k].mesh), prepared.bodies[k].name);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "flotsam/scene/scene_file.hpp"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,19 @@ struct SceneCheck {
 /// whatever a mesh is refused for, a body outside the tank or in a wall or another body (by more than a quarter of the
 /// particle spacing), no fluid left within the walls, more particles than memory holds.
 [[nodiscard]] SceneCheck check_scene(const SceneFile& scene);
+
+/// What check_mesh_file found in a mesh file that can be a body or a volume of fluid.
+struct MeshFileCheck {
+    std::vector<std::string> notes; ///< what was repaired, a sentence each
+    std::size_t triangles = 0;
+    int parts = 0;
+    Aabb bounds;
+    double volume = 0.0;                  ///< [m^3]
+    Vec3d center_of_mass = Vec3d::Zero(); ///< of the uniform solid [m]
+};
+
+/// Finds what is wrong with a mesh file, its numbers taken for metres. Throws InputError as check_mesh does for a
+/// solid, and says so where the mesh can be a wall all the same.
+[[nodiscard]] MeshFileCheck check_mesh_file(const std::filesystem::path& file);
 
 } // namespace flotsam

@@ -47,8 +47,9 @@ TEST_CASE("help says what there is", "[cli]")
 TEST_CASE("a wrong command line is refused with code 2", "[cli]")
 {
     const TemporaryDirectory directory("flotsam_cli_usage");
-    for (const char* arguments : {"", "walk", "run", "run a.json --out", "run a.json --threads many", "check --x a",
-                                  "run a.json --threads -1", "run a.json --out ''"}) {
+    for (const char* arguments :
+         {"", "walk", "run", "run a.json --out", "run a.json --threads many", "check --x a", "run a.json --threads -1",
+          "run a.json --threads 0", "run a.json --threads 1e9", "run a.json --out ''"}) {
         const Outcome wrong = run_program(directory, arguments);
         INFO(arguments);
         CHECK(wrong.code == 2);
@@ -56,6 +57,7 @@ TEST_CASE("a wrong command line is refused with code 2", "[cli]")
         CHECK(contains(wrong.err, "error: "));
         CHECK(wrong.err.find('\n') == wrong.err.size() - 1);
     }
+    CHECK(contains(run_program(directory, "run a.json --threads x").err, "from 1 to 1024, given \"x\""));
     CHECK(contains(run_program(directory, "walk").err, "there is no command \"walk\""));
     CHECK(contains(run_program(directory, "run a.json --out b --fast").err, "no option --fast"));
 }
@@ -106,6 +108,21 @@ TEST_CASE("check says what a scene holds", "[cli]")
     CHECK(contains(check.out, "nothing wrong"));
     CHECK(contains(check.out, "raft"));
     CHECK(contains(check.out, "note: "));
+}
+
+TEST_CASE("check says what a mesh file is good for", "[cli]")
+{
+    const TemporaryDirectory directory("flotsam_cli_check_mesh");
+    const std::string open = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n";
+    directory.write("solid.obj", open + "f 2 3 4\n");
+    directory.write("open.obj", open);
+    const Outcome solid = run_program(directory, "check solid.obj");
+    CHECK(solid.code == 0);
+    CHECK(contains(solid.out, "4 triangles in 1 part, 1 x 1 x 1 m, volume 0.166667 m^3"));
+    const Outcome refused = run_program(directory, "check open.obj");
+    CHECK(refused.code == 2);
+    CHECK(contains(refused.err, "open.obj has 3 edges with a triangle on one side only"));
+    CHECK(run_program(directory, "check solid.obj --set duration=1").code == 2);
 }
 
 TEST_CASE("a file that may grow no further is an error, no signal", "[cli]")

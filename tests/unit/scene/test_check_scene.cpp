@@ -58,7 +58,7 @@ TEST_CASE("mass sets the density, and fluid that overlaps bodies is said", "[sce
     text.replace(text.find("\"density\": 500"), 14, "\"mass\": 2.0");
     const SceneCheck check = checked(text);
     CHECK(check.bodies.at(0).density_ratio == Approx(0.25));
-    CHECK(has_note(check, "overlaps body \"crate\""));
+    CHECK(has_note(check, "overlaps bodies[0] (\"crate\")"));
     CHECK(check.fluid_particles < 0.4 / (0.05 * 0.05 * 0.05) - 20.0);
 }
 
@@ -73,18 +73,18 @@ TEST_CASE("bodies outside the tank or in each other are refused", "[scene]")
     const std::string two = "bodies=[{\"name\":\"a\",\"shape\":{\"sphere\":0.1},\"mass\":1,\"position\":[0.3,0.5,0.5]},"
                             "{\"name\":\"b\",\"shape\":{\"box\":[0.2,0.2,0.2]},\"mass\":1,\"position\":[X,0.5,0.5]}]";
     const auto at = [&](const std::string& x) { return std::string(two).replace(two.find('X'), 1, x); };
-    check_refused(kCrate, {at("0.45")}, {"\"a\" overlaps body \"b\""});
-    check_refused(kCrate, {at("0.3")}, {"\"a\" overlaps body \"b\""}); // one inside the other
+    check_refused(kCrate, {at("0.45")}, {"bodies[0] (\"a\") overlaps bodies[1] (\"b\")"});
+    check_refused(kCrate, {at("0.3")}, {"bodies[0] (\"a\") overlaps bodies[1] (\"b\")"}); // one inside the other
     CHECK(refusal([&] { (void)checked(kCrate, {at("0.5")}); }).empty());
 }
 
 TEST_CASE("2-D bodies are checked in their plane", "[scene]")
 {
     CHECK(refusal([] { (void)checked(kRaft); }).empty());
-    check_refused(kRaft, {"bodies.raft.position=[0.1,0.3]"}, {"\"raft\" overlaps walls[0]", "-x"});
+    check_refused(kRaft, {"bodies.raft.position=[0.1,0.3]"}, {"bodies[0] (\"raft\") overlaps walls[0]", "-x"});
     const std::string two = "bodies=[{\"name\":\"a\",\"shape\":{\"disc\":0.1},\"mass\":1,\"position\":[0.3,0.5]},"
                             "{\"name\":\"b\",\"shape\":{\"box\":[0.2,0.2]},\"mass\":1,\"position\":[0.4,0.5]}]";
-    check_refused(kRaft, {two}, {"\"a\" overlaps body \"b\""});
+    check_refused(kRaft, {two}, {"bodies[0] (\"a\") overlaps bodies[1] (\"b\")"});
     CHECK(checked(kRaft).bodies.at(0).volume == Approx(0.03));
 }
 
@@ -101,11 +101,45 @@ TEST_CASE("a spacing that memory cannot hold is refused with one that fits", "[s
 {
     check_refused(kCrate, {"particle_spacing=1e-6"}, {"particle_spacing 1e-06", "particles", "GB", "or more fits"});
     check_refused(kRaft, {"particle_spacing=1e-9"}, {"particle_spacing 1e-09", "or more fits"});
+    check_refused(kCrate, {"particle_spacing=1e-300"}, {"about inf particles", "or more fits"});
+    check_refused(kCrate, {"particle_spacing=1e-3", "walls.0.box.max=[1000,1000,1]"},
+                  {"or is walls[0], 1e+03 x 1e+03 x 1 m, too large?"});
 }
 
 TEST_CASE("a body too small for the particles is refused", "[scene]")
 {
     check_refused(kCrate, {"bodies.0.shape.box=[0.05,0.05,0.05]"}, {"\"crate\"", "2 particle spacings"});
+    check_refused(kCrate, {"bodies.0.shape.box=[0.2,0.2,1e-6]"}, {"\"crate\"", "1e-06 m thin", "5e-05 m"});
+    check_refused(kRaft, {"bodies.0.shape.box=[1e-6,0.1]"}, {"\"raft\"", "1e-06 m thin"});
+    CHECK(checked(kCrate, {"bodies.0.shape.box=[0.2,0.2,0.001]"}).bodies.size() == 1);
+}
+
+TEST_CASE("a body too light, too heavy or with hardly an inertia is refused", "[scene]")
+{
+    check_refused(kCrate, {"bodies.0.density=1e-4"}, {"\"crate\"", "1e-07 times the density of the fluid"});
+    check_refused(kCrate, {"bodies.0.density=1e9", "fluids.0.density=0.1"}, {"1e+10 times the density"});
+    check_refused(kCrate, {"bodies.0.inertia=[1e-9,1e-9,1e-9]"}, {"\"crate\"", "an inertia of 1e-09 kg m^2"});
+    CHECK(checked(kCrate, {"bodies.0.density=0.1"}).bodies.size() == 1);
+}
+
+TEST_CASE("a scene too far from the origin for single precision is refused", "[scene]")
+{
+    const auto shifted = [](const std::string& from, const std::string& to) {
+        return std::vector<std::string>{"fluids.0.blocks.0={\"min\":[" + from + ",0,0],\"max\":[" + to + ",1,0.4]}",
+                                        "walls.0.box={\"min\":[" + from + ",0,0],\"max\":[" + to + ",1,1]}",
+                                        "bodies=[]"};
+    };
+    check_refused(kCrate, shifted("6000", "6001"), {"6001 m away", "100000 particle spacings (5000 m)"});
+    CHECK(checked(kCrate, shifted("4000", "4001")).fluid_particles > 3000.0);
+}
+
+TEST_CASE("probes where no water can come are noted", "[scene]")
+{
+    const SceneCheck check = checked(kRaft, {"probes.0.pressure=[5,5]", "probes.1.level=[-1]"});
+    CHECK(has_note(check, "probes[0] (\"floor\") is outside"));
+    CHECK(has_note(check, "probes[1] (\"surface\") is outside"));
+    CHECK_FALSE(has_note(checked(kRaft), "probes"));
+    CHECK_FALSE(has_note(checked(kRaft, {"probes.0.pressure=[0.5,0.7]"}), "probes")); // above the water, in the tank
 }
 
 TEST_CASE("mesh files are checked where a scene names them", "[scene]")
@@ -131,6 +165,38 @@ TEST_CASE("mesh files are checked where a scene names them", "[scene]")
     check_refused(kCrate, with_mesh("empty.obj"), {"empty.obj"}, scene);
     check_refused(kCrate, with_mesh("missing.obj"), {"missing.obj"}, scene);
     check_refused(kCrate, with_mesh("nan.obj"), {"nan.obj"}, scene);
+    check_refused(kCrate, with_mesh("missing.obj"), {"scene.json: bodies[0].shape.mesh: "}, scene);
+    check_refused(kCrate, {"fluids.0.meshes=[{\"file\":\"open.obj\"}]"}, {"scene.json: fluids[0].meshes[0]: "}, scene);
+    check_refused(kCrate, {"walls=[{\"mesh\":{\"file\":\"nan.obj\"}}]"}, {"scene.json: walls[0].mesh: "}, scene);
+    check_refused(kCrate, {"walls=[{\"mesh\":{\"file\":\"good.obj\",\"scale\":0.001}}]"},
+                  {"walls[0].mesh: ", "0.001 x 0.001 x 0.001 m", "scale"}, scene);
+    const std::string parts = "bodies.0.shape={\"compound\":[{\"sphere\":0.1},{\"mesh\":{\"file\":\"open.obj\"}}]}";
+    check_refused(kCrate, {parts}, {"bodies[0].shape.compound[1].mesh: "}, scene);
+}
+
+TEST_CASE("a mesh file is checked by itself", "[scene]")
+{
+    const TemporaryDirectory directory("flotsam_check_mesh_file");
+    directory.write("good.obj", tetrahedron());
+    directory.write("inverted.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
+    directory.write("open.obj", tetrahedron(""));
+    directory.write("nan.obj", "v 0 0 nan\n" + tetrahedron("f 2 3 5\n"));
+
+    const MeshFileCheck good = check_mesh_file(directory.path() / "good.obj");
+    CHECK(good.notes.empty());
+    CHECK(good.triangles == 4);
+    CHECK(good.parts == 1);
+    CHECK(good.volume == Approx(1.0 / 6.0));
+    CHECK(good.center_of_mass.isApprox(Vec3d::Constant(0.25)));
+    CHECK(good.bounds.max == Vec3d::Ones());
+    CHECK(check_mesh_file(directory.path() / "inverted.obj").notes.size() == 1);
+    const auto sentence = [&](const char* file) {
+        return refusal([&] { (void)check_mesh_file(directory.path() / file); });
+    };
+    CHECK(sentence("open.obj").find("it can be a wall only") != std::string::npos);
+    CHECK(sentence("nan.obj").find("nan") != std::string::npos);
+    CHECK(sentence("nan.obj").find("wall") == std::string::npos);
+    CHECK(sentence("missing.obj").find("no such file") != std::string::npos);
 }
 
 TEST_CASE("mesh walls hold bodies in or out", "[scene]")
@@ -145,10 +211,10 @@ TEST_CASE("mesh walls hold bodies in or out", "[scene]")
     const std::string tank = "{\"file\":\"corner.obj\",\"scale\":3}";
     CHECK(refusal([&] { (void)checked(kCrate, with_wall(tank, "[0.5,0.5,0.5]"), scene); }).empty());
     check_refused(kCrate, with_wall(tank, "[2,2,2]"), {"\"crate\"", "outside the tank"}, scene);
-    check_refused(kCrate, with_wall(tank, "[0.05,0.5,0.5]"), {"\"crate\" overlaps walls[0]"}, scene);
+    check_refused(kCrate, with_wall(tank, "[0.05,0.5,0.5]"), {"(\"crate\") overlaps walls[0]"}, scene);
 
     const std::string rock = "{\"file\":\"corner.obj\",\"position\":[0.45,0.45,0]}";
-    check_refused(kCrate, with_wall(rock, "[0.6,0.6,0.2]"), {"\"crate\" overlaps walls[0]"}, scene);
+    check_refused(kCrate, with_wall(rock, "[0.6,0.6,0.2]"), {"(\"crate\") overlaps walls[0]"}, scene);
     CHECK(refusal([&] { (void)checked(kCrate, with_wall(rock, "[1.2,1.2,0.6]"), scene); }).empty());
 }
 

@@ -213,7 +213,8 @@ TEST_CASE("a report is JSON whatever is in it", "[scene]")
 
 TEST_CASE("a time step that falls to nothing ends the run", "[scene][run]")
 {
-    CHECK_THROWS_WITH(ran(kRaft, {"fluids.0.kinematic_viscosity=1e30"}), Catch::Contains("the time step fell to"));
+    CHECK_THROWS_WITH(ran(kRaft, {"fluids.0.kinematic_viscosity=1000", "duration=100"}),
+                      Catch::Contains("the time step fell to"));
 }
 
 TEST_CASE("drafts are reported where gravity points down only", "[scene][run]")
@@ -236,4 +237,11 @@ TEST_CASE("blocks of fluid that overlap fill their union once", "[scene][run]")
     CHECK(report.compression.max < 0.2); // a burst had more
     REQUIRE(report.notes.size() == 1);
     CHECK(report.notes[0].find("100 fluid particles lay in an earlier block") == 0);
+}
+
+TEST_CASE("notes call bodies and walls by their names", "[scene][run]")
+{
+    const RunReport report = ran(kRaft, {"bodies.0.shape.box=[0.3,0.01]", "bodies.0.position=[0.5,0.5]"});
+    REQUIRE(report.notes.size() == 1);
+    CHECK(report.notes[0].find("bodies[0] (\"raft\") is thinner") == 0);
 }
