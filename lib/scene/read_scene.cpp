@@ -160,8 +160,8 @@ void refuse_too_many_frames(const JsonObject& root, const SceneFile& scene)
 SceneFile read_root(const Json& document, const std::filesystem::path& file)
 {
     const JsonObject root(JsonNode(document, file.string(), ""),
-                          {"flotsam", "dimensions", "particle_spacing", "gravity", "duration", "time_step", "pressure",
-                           "fluids", "walls", "bodies", "joints", "probes", "output"});
+                          {"flotsam", "dimensions", "particle_spacing", "gravity", "duration", "time_step", "kernel",
+                           "pressure", "fluids", "walls", "bodies", "joints", "probes", "output"});
     read_version(root);
     SceneFile scene;
     scene.file = file;
@@ -174,6 +174,8 @@ SceneFile read_root(const Json& document, const std::filesystem::path& file)
     if (const auto node = root.find("gravity"))
         scene.gravity = read_vector(*node, context, {.unit = "m/s^2", .most = 1e4});
     read_time(root, scene);
+    if (const auto node = root.find("kernel"))
+        scene.kernel = std::array{KernelKind::quintic, KernelKind::cubic}[node->one_of({"quintic", "cubic"})];
     if (const auto node = root.find("pressure")) scene.pressure = read_pressure(*node);
     scene.fluid = read_the_fluid(root.required("fluids"), context);
     for (const JsonNode& node : root.list("walls")) scene.walls.push_back(read_wall(node, context));

@@ -15,6 +15,7 @@ FluidWorldSettings fluid_settings(const SceneFile& scene, int threads)
     settings.gravity = scene.gravity;
     settings.rest_density = scene.fluid.density;
     settings.kinematic_viscosity = scene.fluid.kinematic_viscosity;
+    settings.kernel = scene.kernel;
     settings.pressure = scene.pressure;
     settings.max_time_step = scene.max_time_step;
     settings.cfl = scene.cfl;

@@ -9,18 +9,19 @@
 
 namespace flotsam {
 
-BoundaryCalibration boundary_calibration(int dimensions)
+BoundaryCalibration boundary_calibration(KernelKind kernel, int dimensions)
 {
-    // 3-D: sphere and cube of 16 d under water 0.999 and 1.003 of the displaced weight, level -0.10 d in a tank 26 d
-    // wide. 2-D: disc and square of 12 d 1.01 and 1.00, level -0.11 d. Deeper samples (0.95 d) put the pressure of the
-    // layer at a wall right (1.03 instead of 1.42 of hydrostatic) but hold bodies up and down like a granular packing.
-    return dimensions == 3 ? BoundaryCalibration{0.6, 1.1} : BoundaryCalibration{0.6, 1.05};
+    // Cubic, 3-D: sphere and cube of 16 d under water 0.999 and 1.003 of the displaced weight, level -0.10 d in a tank
+    // 26 d wide. 2-D: disc and square of 12 d 1.01 and 1.00, level -0.11 d.
+    if (kernel == KernelKind::cubic)
+        return dimensions == 3 ? BoundaryCalibration{0.6, 1.1} : BoundaryCalibration{0.6, 1.05};
+    return dimensions == 3 ? BoundaryCalibration{0.66, 1.1} : BoundaryCalibration{0.66, 1.1};
 }
 
 namespace {
 
 /// Integral of the kernel over a plane (in 2-D: a line) at distance z [1/m].
-double plane_integral(const CubicSpline& kernel, double z, int dimensions)
+double plane_integral(const Kernel& kernel, double z, int dimensions)
 {
     constexpr int kSteps = 400;
     const double reach = static_cast<double>(kernel.support());
@@ -35,11 +36,11 @@ double plane_integral(const CubicSpline& kernel, double z, int dimensions)
 
 } // namespace
 
-std::vector<double> sample_volumes(std::span<const Vec3d> positions, std::span<const double> depths,
+std::vector<double> sample_volumes(std::span<const Vec3d> positions, std::span<const double> depths, KernelKind kind,
                                    double particle_spacing, int dimensions)
 {
-    const double support = 2.0 * particle_spacing;
-    const CubicSpline kernel(support, dimensions);
+    const Kernel kernel(kind, particle_spacing, dimensions);
+    const double support = static_cast<double>(kernel.support());
     std::vector<Vec4> points(positions.size());
     for (std::size_t b = 0; b < points.size(); ++b) points[b] << positions[b].cast<Scalar>(), Scalar(0);
     const Workers workers(1);
@@ -48,8 +49,8 @@ std::vector<double> sample_volumes(std::span<const Vec3d> positions, std::span<c
     lists.build(grid, points, workers);
     NeighbourSearch search;
     Pairs pairs;
-    search.find(kernel, grid, lists, points, points, true, workers, pairs);
-    const BoundaryCalibration calibration = boundary_calibration(dimensions);
+    kernel.visit([&](const auto& spline) { search.find(spline, grid, lists, points, points, true, workers, pairs); });
+    const BoundaryCalibration calibration = boundary_calibration(kind, dimensions);
     const double water = 0.5 * particle_spacing, full = calibration.inset * particle_spacing;
     const double at_full = plane_integral(kernel, water + full, dimensions);
     std::vector<double> volumes(points.size());

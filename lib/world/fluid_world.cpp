@@ -36,7 +36,7 @@ const FluidWorldSettings& checked(const FluidWorldSettings& s)
 } // namespace
 
 FluidWorld::Impl::Impl(const FluidWorldSettings& s)
-    : settings(checked(s)), workers(s.threads), kernel(2.0 * s.particle_spacing, s.dimensions)
+    : settings(checked(s)), workers(s.threads), kernel(s.kernel, s.particle_spacing, s.dimensions)
 {
 }
 
@@ -162,8 +162,8 @@ double FluidWorld::allowed_time_step() const
         dt = std::min(dt, kPressureStep * s.particle_spacing / std::sqrt(impl_->max_pressure / s.rest_density));
     }
     if (s.kinematic_viscosity > 0.0) {
-        const double h = impl_->support();
-        dt = std::min(dt, 0.125 * h * h / (4.0 * s.kinematic_viscosity)); // Morris et al. 1997, smoothing length h / 2
+        dt =
+            std::min(dt, 0.125 * s.particle_spacing * s.particle_spacing / s.kinematic_viscosity); // Morris et al. 1997
     }
     return dt;
 }

@@ -70,7 +70,7 @@ struct FluidWorld::Impl {
 
     FluidWorldSettings settings;
     Workers workers;
-    CubicSpline kernel;
+    Kernel kernel;
     double time = 0.0;
     double max_pressure = 0.0; ///< of the last step; before it the hydrostatic one [Pa]
     double max_speed = 0.0;    ///< of fluid and bodies [m/s]
@@ -120,7 +120,7 @@ struct FluidWorld::Impl {
 
     [[nodiscard]] std::size_t owners() const { return walls.size() + bodies.size(); }
     [[nodiscard]] double spacing() const { return settings.particle_spacing; }
-    [[nodiscard]] double support() const { return 2.0 * settings.particle_spacing; }
+    [[nodiscard]] double support() const { return static_cast<double>(kernel.support()); }
 
     // readings.cpp
     enum class Readable { any, free, bulk };

@@ -147,11 +147,11 @@ void FluidWorld::Impl::sample_surfaces()
 {
     SurfaceSampleSettings sampling;
     sampling.spacing = 0.7 * spacing();
-    sampling.inset = boundary_calibration(settings.dimensions).inset * spacing();
+    sampling.inset = boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
     sampling.dimensions = settings.dimensions;
     const auto add = [&](const SurfaceSamples& samples, std::size_t owner, const std::string& name) {
         const std::vector<double> volumes =
-            sample_volumes(samples.positions, samples.depth, spacing(), settings.dimensions);
+            sample_volumes(samples.positions, samples.depth, settings.kernel, spacing(), settings.dimensions);
         for (std::size_t b = 0; b < volumes.size(); ++b) {
             Vec4 position = Vec4::Zero();
             position.head<3>() = samples.positions[b].cast<Scalar>();

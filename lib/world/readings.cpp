@@ -77,15 +77,16 @@ double FluidWorld::pressure_at(const Vec3d& point) const
     // away if there is little of it near, then what there is.
     using Readable = Impl::Readable;
     struct Try {
-        int reach;         ///< cells
+        double reach;      ///< spacings
         Readable least;    ///< of a particle
         double min_filled; ///< volume fraction of the kernel that is enough to go by
     };
-    for (const Try& t : {Try{2, Readable::bulk, 0.5}, Try{4, Readable::free, 0.1}, Try{1, Readable::any, 0.1}}) {
+    for (const Try& t : {Try{4, Readable::bulk, 0.5}, Try{8, Readable::free, 0.1}, Try{2, Readable::any, 0.1}}) {
         // A flat weight: next to a wall layers lie in turn above and below the mean.
-        const double radius = t.reach * world.support();
+        const double radius = t.reach * world.spacing();
+        const int cells = static_cast<int>(std::ceil(radius / world.support()));
         double weights = 0.0, sum = 0.0;
-        visit_around(world.grid, world.fluid_cells, point, t.reach, [&](std::uint32_t j) {
+        visit_around(world.grid, world.fluid_cells, point, cells, [&](std::uint32_t j) {
             const Vec3d at = world.fluid.position[j].head<3>().cast<double>();
             const double w = 1.0 - (point - at).squaredNorm() / (radius * radius);
             if (!(w > 0.0) || world.readable(j) < t.least) return;

@@ -116,6 +116,7 @@ struct SceneFile {
     double duration = 0.0;                  ///< [s]
     double max_time_step = 0.004;           ///< time_step.max [s]
     double cfl = 0.4;                       ///< time_step.cfl
+    KernelKind kernel = KernelKind::quintic;
     PressureSettings pressure;
     SceneFluid fluid;
     std::vector<SceneWall> walls;

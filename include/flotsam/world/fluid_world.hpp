@@ -4,6 +4,7 @@
 #include "flotsam/geometry/triangle_mesh.hpp"
 #include "flotsam/sph/boundary_state.hpp"
 #include "flotsam/sph/fluid_state.hpp"
+#include "flotsam/sph/kernel.hpp"
 #include "flotsam/sph/pressure/settings.hpp"
 #include "flotsam/world/bodies.hpp"
 #include "flotsam/world/step_report.hpp"
@@ -25,6 +26,7 @@ struct FluidWorldSettings {
     double rest_density = 1000.0;           ///< [kg/m^3], > 0
     double kinematic_viscosity = 1e-6;      ///< [m^2/s], >= 0
     double dissipation = 2.0;               ///< of velocity noise below the resolution, x d |dv|; 0: none, >= 0
+    KernelKind kernel = KernelKind::quintic;
     PressureSettings pressure{};
     double max_time_step = 0.004; ///< [s], > 0
     double cfl = 0.4;             ///< of a spacing that the fastest particle may go in a step, in (0, 1]

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flotsam/sph/pressure/settings.hpp"
+#include "sph/pressure/largest_eigenvalue.hpp"
 #include "sph/pressure/pressure_system.hpp"
 
 #include <span>
@@ -36,14 +37,16 @@ class ComplementaritySolver {
                               const SolveGoal& goal, std::span<Scalar> x) = 0;
 };
 
-/// Relaxed Jacobi with projection, relaxation 1/2. **Source:** Ihmsen et al. 2014, algorithm 1.
-/// **Differs:** residual as above; the diagonal holds the rigid response.
+/// Relaxed Jacobi with projection. **Source:** Ihmsen et al. 2014, algorithm 1.
+/// **Differs:** residual as above; the diagonal holds the rigid response; the relaxation is 1.5 / (largest eigenvalue
+/// of D^-1 A) instead of 1/2, which is right for one kernel and one number of neighbours only.
 class RelaxedJacobi final : public ComplementaritySolver {
   public:
     SolveResult solve(PressureOperator& op, std::span<const Scalar> b, std::span<const Scalar> diagonal,
                       const SolveGoal& goal, std::span<Scalar> x) override;
 
   private:
+    LargestEigenvalue largest_eigenvalue_;
     std::vector<Scalar> product_;
     std::vector<double> sums_;
 };
@@ -60,11 +63,11 @@ class Mprgp final : public ComplementaritySolver {
         double a = 0.0, b = 0.0;
         Sums& operator+=(const Sums& other);
     };
-    double largest_eigenvalue(PressureOperator& op);
     double largest_feasible_step(std::span<const Scalar> x, const Workers& workers);
     void advance(double step, std::span<Scalar> x, const Workers& workers);
 
-    std::vector<Scalar> root_, gradient_, direction_, product_, work_, power_;
+    LargestEigenvalue largest_eigenvalue_;
+    std::vector<Scalar> root_, gradient_, direction_, product_, work_;
     std::vector<double> sums_;
     std::vector<Sums> pair_sums_;
 };

@@ -15,30 +15,6 @@ Mprgp::Sums& Mprgp::Sums::operator+=(const Sums& other)
 // Symbols as in the paper: g gradient, phi free gradient (g where x > 0), beta chopped gradient (min(g, 0) where
 // x = 0), phi~ = min(x / alpha, phi), p direction. All of them in the variable y = sqrt(diagonal) x, A scaled likewise.
 
-double Mprgp::largest_eigenvalue(PressureOperator& op)
-{
-    const Workers& workers = op.system().workers();
-    const std::size_t n = root_.size();
-    if (power_.size() != n) {
-        power_.resize(n);
-        for (std::size_t i = 0; i < n; ++i) power_[i] = Scalar(1) + Scalar(0.5) * static_cast<Scalar>(i % 7);
-    }
-    double value = 0.0;
-    for (int k = 0; k < 3; ++k) {
-        workers.for_each(n, [&](std::size_t i) { work_[i] = power_[i] * root_[i]; });
-        op.apply(work_, product_);
-        const double norm_sq = workers.ordered_sum<double>(n, sums_, [&](std::size_t i) {
-            power_[i] = product_[i] * root_[i];
-            return static_cast<double>(power_[i]) * static_cast<double>(power_[i]);
-        });
-        value = std::sqrt(norm_sq);
-        if (!(value > 0.0)) return 1.0;
-        const Scalar inverse = static_cast<Scalar>(1.0 / value);
-        workers.for_each(n, [&](std::size_t i) { power_[i] *= inverse; });
-    }
-    return value;
-}
-
 SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::span<const Scalar> diagonal,
                          const SolveGoal& goal, std::span<Scalar> x)
 {
@@ -49,8 +25,7 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
         root_[i] = diagonal[i] > Scalar(0) ? Scalar(1) / std::sqrt(diagonal[i]) : Scalar(0); // 0 freezes lone particles
         if (!(diagonal[i] > Scalar(0))) x[i] = 0;
     });
-    // A step of 1.5 / |A| leaves room for a norm that three power iterations underestimate (a bound of 2 is allowed).
-    const double alpha = 1.5 / largest_eigenvalue(op);
+    double alpha = 0.0; // length of projected steps, not known yet
     // y is kept as x: x = y * root. gradient_ = root * (A x - b).
     const auto refresh_gradient = [&] {
         op.apply(x, product_);
@@ -79,6 +54,8 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
         result.converged = result.residual <= goal.tolerance;
         if (result.converged && result.iterations >= goal.min_iterations) break;
         if (result.iterations >= goal.max_iterations) break;
+        // 1.5 / |A| leaves room for a norm that is underestimated (a bound of 2 is allowed).
+        if (result.iterations == 0) alpha = 1.5 / largest_eigenvalue_.of(op, diagonal);
         ++result.iterations;
         const Sums norms = workers.ordered_sum<Sums>(n, sums, [&](std::size_t i) {
             const double g = gradient_[i];

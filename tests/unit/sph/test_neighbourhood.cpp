@@ -46,7 +46,8 @@ TEST_CASE("neighbours are those of brute force", "[sph][oracle]")
             const bool near = (a[i] - others[j]).head<3>().squaredNorm() < static_cast<Scalar>(support * support);
             if (near && !(same && i == j)) expected.push_back(j);
         }
-        std::vector<std::uint32_t> found(pairs.index.begin() + pairs.start[i], pairs.index.begin() + pairs.start[i + 1]);
+        std::vector<std::uint32_t> found(pairs.index.begin() + pairs.start[i],
+                                         pairs.index.begin() + pairs.start[i + 1]);
         std::sort(found.begin(), found.end());
         CHECK(found == expected);
     }

@@ -115,8 +115,7 @@ TEST_CASE("density rate is the derivative of the density", "[sph][pressure][deri
         for (std::size_t b = 0; b < samples.size(); ++b) {
             const Vec3d arm = samples[b].head<3>().cast<double>() - cloud.centers[1];
             if (cloud.boundary.owner[b] == 1) {
-                cloud.boundary.position[b].head<3>() =
-                    samples[b].head<3>() + (t * twists[1].at(arm)).cast<Scalar>();
+                cloud.boundary.position[b].head<3>() = samples[b].head<3>() + (t * twists[1].at(arm)).cast<Scalar>();
             }
         }
         cloud.refresh();
