@@ -36,7 +36,7 @@ void NeighbourSearch::find_indices(Scalar support, const CellGrid& grid, const C
     pairs.start[0] = 0;
     workers.for_chunks(a.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t>& found = found_[chunk];
-        if (found.empty()) found.resize(Workers::kChunk * 96);
+        if (found.empty()) found.resize(Workers::kChunk * 192);
         std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t before = count;

@@ -73,6 +73,13 @@ double FluidWorld::pressure_at(const Vec3d& point) const
     require(point.allFinite(), "a point must be finite [m]");
     const Impl& world = *impl_;
     if (world.fluid_pairs.rows() != world.fluid.size()) return 0.0; // before the first step
+    const auto cells_within = [&](double radius) { return static_cast<int>(std::ceil(radius / world.support())); };
+    bool is_wet = false;
+    visit_around(world.grid, world.fluid_cells, point, cells_within(2.0 * world.spacing()), [&](std::uint32_t j) {
+        const Vec3d at = world.fluid.position[j].head<3>().cast<double>();
+        is_wet = is_wet || (point - at).norm() < 2.0 * world.spacing();
+    });
+    if (!is_wet) return 0.0;
     // The layer at a wall and the one that leans on it share its force unevenly: the bulk is asked first, from further
     // away if there is little of it near, then what there is.
     using Readable = Impl::Readable;
@@ -81,12 +88,12 @@ double FluidWorld::pressure_at(const Vec3d& point) const
         Readable least;    ///< of a particle
         double min_filled; ///< volume fraction of the kernel that is enough to go by
     };
-    for (const Try& t : {Try{4, Readable::bulk, 0.5}, Try{8, Readable::free, 0.1}, Try{2, Readable::any, 0.1}}) {
+    for (const Try& t : {Try{4, Readable::bulk, 0.5}, Try{8, Readable::bulk, 0.02}, Try{8, Readable::free, 0.02},
+                         Try{2, Readable::any, 0.1}}) {
         // A flat weight: next to a wall layers lie in turn above and below the mean.
         const double radius = t.reach * world.spacing();
-        const int cells = static_cast<int>(std::ceil(radius / world.support()));
         double weights = 0.0, sum = 0.0;
-        visit_around(world.grid, world.fluid_cells, point, cells, [&](std::uint32_t j) {
+        visit_around(world.grid, world.fluid_cells, point, cells_within(radius), [&](std::uint32_t j) {
             const Vec3d at = world.fluid.position[j].head<3>().cast<double>();
             const double w = 1.0 - (point - at).squaredNorm() / (radius * radius);
             if (!(w > 0.0) || world.readable(j) < t.least) return;
