@@ -108,7 +108,7 @@ void Viscosity::add_at_boundaries(const ViscositySettings& settings, double dt, 
     workers.for_chunks(fluid.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         std::vector<Reaction>& reactions = reactions_[chunk];
         reactions.clear();
-        if (reactions.capacity() == 0) reactions.reserve(Workers::kChunk); // a new one where the owner changes only
+        if (reactions.capacity() == 0) reactions.reserve(16); // owners that the particles of a chunk touch
         for (std::size_t i = begin; i < end; ++i) {
             Vec4 change = Vec4::Zero();
             for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
@@ -119,11 +119,13 @@ void Viscosity::add_at_boundaries(const ViscositySettings& settings, double dt, 
                 part[3] = 0;
                 change += part;
                 const std::int32_t owner = boundary.owner[b];
-                if (reactions.empty() || reactions.back().owner != owner) reactions.push_back({owner, {}});
+                auto reaction = std::find_if(reactions.begin(), reactions.end(),
+                                             [&](const Reaction& r) { return r.owner == owner; });
+                if (reaction == reactions.end()) reaction = reactions.insert(reaction, {owner, {}});
                 const Vec3d impulse = -fluid.particle_mass * part.head<3>().cast<double>();
                 const Vec3d arm =
                     boundary.position[b].head<3>().cast<double>() - centers[static_cast<std::size_t>(owner)];
-                reactions.back().impulse += {impulse, arm.cross(impulse)};
+                reaction->impulse += {impulse, arm.cross(impulse)};
             }
             velocity[i] += change;
         }
