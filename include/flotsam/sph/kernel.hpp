@@ -126,6 +126,7 @@ class Kernel {
     {
         return visit([r](const auto& kernel) { return kernel.value(r); });
     }
+
   private:
     using Any = std::variant<QuinticSpline, CubicSpline>;
     static Any make(KernelKind kind, double spacing, int dimensions)
