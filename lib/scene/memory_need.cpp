@@ -15,8 +15,12 @@
 namespace flotsam::scene {
 namespace {
 
-/// State, lists of about 35 neighbours and the solver's arrays, of one particle or sample; a run took 1290.
-constexpr double kBytesPerParticle = 1400.0;
+/// State, lists of neighbours (about 82, or 33) and the solver's arrays, of one particle or sample; runs took 2450 and
+/// 1290 [bytes].
+double bytes_per_particle(KernelKind kernel)
+{
+    return kernel == KernelKind::cubic ? 1400.0 : 2600.0;
+}
 
 /// What the machine has, or what a container or the shell leave of it [bytes].
 double usable_memory()
@@ -84,10 +88,10 @@ double total(const std::vector<Taker>& takers, double spacing, int dimensions)
     return sum;
 }
 
-/// The smallest spacing, of two digits, with which the memory suffices.
-double fitting_spacing(const std::vector<Taker>& takers, double spacing, int dimensions, double memory)
+/// The smallest spacing, of two digits, that takes at most so many particles and samples.
+double fitting_spacing(const std::vector<Taker>& takers, double spacing, int dimensions, double most_particles)
 {
-    while (!(total(takers, spacing, dimensions) * kBytesPerParticle <= memory)) spacing *= 1.02;
+    while (!(total(takers, spacing, dimensions) <= most_particles)) spacing *= 1.02;
     const double digit = std::pow(10.0, std::floor(std::log10(spacing)) - 1.0);
     return std::ceil(spacing / digit) * digit;
 }
@@ -105,7 +109,7 @@ void refuse_too_many_particles(const SceneFile& scene, PreparedScene& prepared)
         prepared.boundary_samples += taker.samples(spacing, dimensions);
     }
     const double count = prepared.fluid_particles + prepared.boundary_samples;
-    prepared.memory_bytes = count * kBytesPerParticle;
+    prepared.memory_bytes = count * bytes_per_particle(scene.kernel);
     const double memory = usable_memory();
     if (prepared.memory_bytes <= memory) return;
     const Taker& most = *std::max_element(takers.begin(), takers.end(), [&](const Taker& a, const Taker& b) {
@@ -115,7 +119,8 @@ void refuse_too_many_particles(const SceneFile& scene, PreparedScene& prepared)
     sentence.precision(3);
     sentence << scene.file.string() << ": particle_spacing " << spacing << " m would take about " << count
              << " particles and " << prepared.memory_bytes / 1e9 << " GB of memory, and there are " << memory / 1e9
-             << " GB; a spacing of " << fitting_spacing(takers, spacing, dimensions, memory)
+             << " GB; a spacing of "
+             << fitting_spacing(takers, spacing, dimensions, memory / bytes_per_particle(scene.kernel))
              << " m or more fits, or is " << most.name << ", " << most.size.x() << " x " << most.size.y() << " x "
              << most.size.z() << " m, too large?";
     throw InputError(sentence.str());
