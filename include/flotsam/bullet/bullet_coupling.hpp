@@ -28,6 +28,9 @@ inline namespace bullet_single {
 ///
 /// Locked axes (linear and angular factors of 0) hold exactly. A body that the water touches stays awake; one that
 /// sleeps elsewhere is woken by the first impulse. In a FluidWorld of two dimensions bodies are locked to the plane.
+///
+/// Contacts and constraints stay with Bullet's solver. The water answers a body as if it were free of them and finds
+/// out with the next step what they made of it.
 class BulletCoupling {
   public:
     BulletCoupling(FluidWorld& fluid, btDynamicsWorld& world);
