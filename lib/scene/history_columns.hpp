@@ -7,7 +7,7 @@
 
 namespace flotsam::scene {
 
-/// Names of the columns of history.csv: `t`, 18 of each body, one of each probe.
+/// Names of the columns of history.csv: `t`, 18 of each body, one of each joint and of each probe.
 [[nodiscard]] std::vector<std::string> history_columns(const SceneFile& scene);
 
 } // namespace flotsam::scene

@@ -162,6 +162,17 @@ std::optional<ScenePictures> read_pictures(const JsonNode& node, const ReadConte
 
 } // namespace
 
+void add_name(std::set<std::string>& names, const std::string& name, const JsonNode& node)
+{
+    if (!names.insert(name).second)
+        node.child("name").refuse_value("must differ from the names of all other bodies, joints and probes");
+    const auto breaks_a_table = [](unsigned char c) { return c == ',' || c == '"' || c < 0x20 || c == 0x7f; };
+    if (std::any_of(name.begin(), name.end(), breaks_a_table))
+        node.child("name").refuse_value("must be free of commas, quotes, tabs, line breaks and the like");
+    if (name.find_first_not_of(' ') == std::string::npos || name.front() == ' ' || name.back() == ' ')
+        node.child("name").refuse_value("must not begin or end with a space");
+}
+
 Vec3d read_vector(const JsonNode& node, const ReadContext& context, Allowed allowed)
 {
     if (context.dimensions == 3) {

@@ -3,6 +3,9 @@
 #include "flotsam/scene/scene_file.hpp"
 #include "scene/strict_json.hpp"
 
+#include <set>
+#include <string>
+
 namespace flotsam::scene {
 
 /// What the parts of a scene need to know of the whole.
@@ -17,6 +20,9 @@ struct ReadContext {
 
 /// What is faster is no water; a unit was misread.
 inline constexpr Allowed kSpeed{.unit = "m/s", .most = 1000.0};
+
+/// Adds the "name" of a node to those of the scene, all of which must differ.
+void add_name(std::set<std::string>& names, const std::string& name, const JsonNode& node);
 
 /// [x, y, z]; in 2-D also [x, z], and y must be 0.
 [[nodiscard]] Vec3d read_vector(const JsonNode& node, const ReadContext& context, Allowed allowed = {});

@@ -1,9 +1,8 @@
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/scene/scene_file.hpp"
 #include "scene/history_columns.hpp"
-#include "scene/read_parts.hpp"
+#include "scene/read_joints.hpp"
 
-#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -102,31 +101,14 @@ SceneProbe read_probe(const JsonNode& node, const ReadContext& context)
     return probe;
 }
 
-/// History columns are called after bodies and probes, so their names are all different.
+/// History columns are called after bodies, joints and probes, so their names are all different.
 void refuse_columns_that_come_twice(const std::vector<std::string>& columns, const JsonObject& root)
 {
     std::set<std::string> seen;
     for (const std::string& column : columns)
         if (!seen.insert(column).second)
             root.node().refuse("would have two columns \"" + column +
-                               "\" in history.csv; give another name to a body or probe");
-}
-
-void add_name(std::set<std::string>& names, const std::string& name, const JsonNode& node)
-{
-    if (!names.insert(name).second)
-        node.child("name").refuse_value("must differ from the names of all other bodies and probes");
-    const auto breaks_a_table = [](unsigned char c) { return c == ',' || c == '"' || c < 0x20 || c == 0x7f; };
-    if (std::any_of(name.begin(), name.end(), breaks_a_table))
-        node.child("name").refuse_value("must be free of commas, quotes, tabs, line breaks and the like");
-    if (name.find_first_not_of(' ') == std::string::npos || name.front() == ' ' || name.back() == ' ')
-        node.child("name").refuse_value("must not begin or end with a space");
-}
-
-void refuse_joints(const JsonObject& root)
-{
-    if (!root.list("joints").empty())
-        root.required("joints").refuse("are not in this version yet; the list must be empty");
+                               "\" in history.csv; give another name to a body, joint or probe");
 }
 
 void read_time(const JsonObject& root, SceneFile& scene)
@@ -184,7 +166,7 @@ SceneFile read_root(const Json& document, const std::filesystem::path& file)
         scene.bodies.push_back(read_body(node, context));
         add_name(names, scene.bodies.back().name, node);
     }
-    refuse_joints(root);
+    scene.joints = read_joints(root, context, scene.bodies, names);
     for (const JsonNode& node : root.list("probes")) {
         scene.probes.push_back(read_probe(node, context));
         add_name(names, scene.probes.back().name, node);

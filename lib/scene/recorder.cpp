@@ -64,6 +64,7 @@ std::vector<std::string> history_columns(const SceneFile& scene)
         for (const char* suffix :
              {"x", "y", "z", "rx", "ry", "rz", "vx", "vy", "vz", "wx", "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz"})
             columns.push_back(body.name + "." + suffix);
+    for (const SceneJoint& joint : scene.joints) columns.push_back(joint.name + ".position");
     for (const SceneProbe& probe : scene.probes) columns.push_back(probe.name);
     return columns;
 }
@@ -96,6 +97,10 @@ void History::write_row(const SceneFile& scene, const PreparedScene& prepared, c
         append(row, now.twist.angular);
         append(row, force.linear);
         append(row, force.angular);
+    }
+    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+        const bool slides = scene.joints[k].type == SceneJoint::Type::slider;
+        row.push_back(world.joint(k).position * (slides ? 1.0 : kDegrees));
     }
     for (const SceneProbe& probe : scene.probes)
         row.push_back(read_probe(world.fluid(), probe).value_or(std::numeric_limits<double>::quiet_NaN()));

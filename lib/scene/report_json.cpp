@@ -74,6 +74,16 @@ Json body_json(const BodyReport& body)
             {"torque_fluid_mean", vector(body.torque_fluid_mean)}};
 }
 
+Json joint_json(const JointReport& joint)
+{
+    Json json = {{"name", joint.name}, {"type", joint.type}};
+    if (joint.angle_deg) json["angle_deg"] = number(joint.angle_deg);
+    if (joint.position) json["position"] = number(joint.position);
+    json["force_mean"] = vector(joint.force_mean);
+    json["torque_mean"] = vector(joint.torque_mean);
+    return json;
+}
+
 } // namespace
 
 std::string report_as_json(const RunReport& report)
@@ -97,9 +107,11 @@ std::string report_as_json(const RunReport& report)
                  {"state_hash", hexadecimal(report.state_hash)},
                  {"ledger", ledger_json(report.ledger)},
                  {"bodies", Json::array()},
+                 {"joints", Json::array()},
                  {"probes", Json::array()},
                  {"notes", report.notes}};
     for (const BodyReport& body : report.bodies) json["bodies"].push_back(body_json(body));
+    for (const JointReport& joint : report.joints) json["joints"].push_back(joint_json(joint));
     for (const ProbeReport& probe : report.probes)
         json["probes"].push_back({{"name", probe.name}, {"mean", number(probe.mean)}, {"last", number(probe.last)}});
     if (!report.failure.empty()) json["failure"] = report.failure;

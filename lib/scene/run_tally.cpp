@@ -48,7 +48,7 @@ std::optional<double> read_probe(const FluidWorld& fluid, const SceneProbe& prob
 RunTally::RunTally(const SceneFile& scene, const PreparedScene& prepared, const SceneWorld& world)
     : scene_(scene), prepared_(prepared), world_(world),
       wall_forces_(scene.walls.size(), TimeMean<Vec3d>(Vec3d::Zero())),
-      probes_(scene.probes.size(), TimeMean<double>(0.0)), bodies_(scene.bodies.size())
+      probes_(scene.probes.size(), TimeMean<double>(0.0)), bodies_(scene.bodies.size()), joints_(scene.joints.size())
 {
     ledger_.fluid_momentum_start = ledger_.fluid_momentum_end = momentum(world.fluid().fluid());
 }
@@ -90,6 +90,10 @@ void RunTally::add_last_quarter(const StepReport& step)
         bodies_[k].force.add(wrench.linear, step.dt);
         bodies_[k].torque.add(wrench.angular, step.dt);
     }
+    for (std::size_t k = 0; k < joints_.size(); ++k) {
+        joints_[k].force.add(world_.joint(k).wrench.linear, step.dt);
+        joints_[k].torque.add(world_.joint(k).wrench.angular, step.dt);
+    }
     if (bodies_.empty() || fluid.time() < next_draft_) return;
     next_draft_ = std::max(next_draft_, 0.75 * scene_.duration) + 0.25 * scene_.duration / kDraftsMeasured;
     measure_drafts(1.0);
@@ -116,6 +120,7 @@ RunReport RunTally::report() const
     report_fluid(report);
     report.ledger = report_ledger();
     for (std::size_t k = 0; k < bodies_.size(); ++k) report.bodies.push_back(report_body(k));
+    for (std::size_t k = 0; k < joints_.size(); ++k) report.joints.push_back(report_joint(k));
     for (std::size_t k = 0; k < probes_.size(); ++k)
         report.probes.push_back(
             {scene_.probes[k].name, probes_[k].mean(), read_probe(world_.fluid(), scene_.probes[k])});
@@ -156,6 +161,23 @@ BodyReport RunTally::report_body(std::size_t k) const
     report.mass = body.mass;
     if (!is_level(scene_.gravity)) return report;
     report.exact_draft = equilibrium_draft(body.mesh, now.pose.orientation, body.mass / scene_.fluid.density);
+    return report;
+}
+
+JointReport RunTally::report_joint(std::size_t k) const
+{
+    using Type = SceneJoint::Type;
+    const Type type = scene_.joints[k].type;
+    const double position = world_.joint(k).position;
+    JointReport report;
+    report.name = scene_.joints[k].name;
+    report.type = type == Type::hinge ? "hinge" : type == Type::slider ? "slider" : "ball";
+    if (type == Type::slider)
+        report.position = position;
+    else
+        report.angle_deg = position * kDegrees;
+    report.force_mean = joints_[k].force.mean().value_or(Vec3d::Zero());
+    report.torque_mean = joints_[k].torque.mean().value_or(Vec3d::Zero());
     return report;
 }
 

@@ -49,11 +49,15 @@ class RunTally {
         TimeMean<Vec3d> force{Vec3d::Zero()}, torque{Vec3d::Zero()};
         TimeMean<double> draft{0.0};
     };
+    struct JointMeans {
+        TimeMean<Vec3d> force{Vec3d::Zero()}, torque{Vec3d::Zero()};
+    };
     void add_totals(const StepReport& step);
     void add_last_quarter(const StepReport& step);
     void measure_drafts(double dt);
     void report_fluid(RunReport& report) const;
     [[nodiscard]] BodyReport report_body(std::size_t k) const;
+    [[nodiscard]] JointReport report_joint(std::size_t k) const;
     [[nodiscard]] MomentumLedger report_ledger() const;
 
     const SceneFile& scene_;
@@ -68,6 +72,7 @@ class RunTally {
     std::vector<TimeMean<Vec3d>> wall_forces_;
     std::vector<TimeMean<double>> probes_;
     std::vector<BodyMeans> bodies_;
+    std::vector<JointMeans> joints_;
 };
 
 } // namespace flotsam::scene

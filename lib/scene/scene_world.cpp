@@ -7,6 +7,9 @@
 namespace flotsam::scene {
 namespace {
 
+/// Bullet's default of 10 leaves joints of heavy bodies on light ones visibly open.
+constexpr int kIterationsWithJoints = 100;
+
 FluidWorldSettings fluid_settings(const SceneFile& scene, int threads)
 {
     FluidWorldSettings settings;
@@ -79,6 +82,7 @@ SceneWorld::SceneWorld(const SceneFile& scene, const PreparedScene& prepared, in
         fluid_.add_fluid_mesh(prepared.fluid_meshes[k], scene.fluid.meshes[k].velocity);
     add_walls(scene, prepared);
     add_bodies(scene, prepared);
+    add_joints(scene);
     fluid_.prepare(coupling_->bodies());
     if (fluid_.fluid().size() == 0)
         throw InputError(scene.file.string() + ": no fluid is left within the walls and outside the bodies");
@@ -87,6 +91,7 @@ SceneWorld::SceneWorld(const SceneFile& scene, const PreparedScene& prepared, in
 SceneWorld::~SceneWorld()
 {
     coupling_.reset();
+    joints_.clear();
     for (const auto& body : bodies_) world_.removeRigidBody(body.get());
     for (const auto& wall : walls_) world_.removeRigidBody(wall.get());
 }
@@ -116,6 +121,23 @@ void SceneWorld::add_bodies(const SceneFile& scene, const PreparedScene& prepare
         world_.addRigidBody(bodies_.back().get());
         fluid_.name_body(coupling_->add(*bodies_.back(), prepared.bodies[k].mesh), prepared.bodies[k].name);
     }
+}
+
+void SceneWorld::add_joints(const SceneFile& scene)
+{
+    if (scene.joints.empty()) return;
+    world_.getSolverInfo().m_numIterations = kIterationsWithJoints;
+    ground_ = rigid_body(0.0, Vec3d::Zero(), Pose(), 0.0, nullptr);
+    for (const SceneJoint& joint : scene.joints)
+        joints_.push_back(
+            std::make_unique<BulletJoint>(joint, *bodies_[joint.a], joint.b ? *bodies_[*joint.b] : *ground_, world_));
+}
+
+StepReport SceneWorld::step(double dt)
+{
+    StepReport report = coupling_->step(dt);
+    for (const auto& joint : joints_) joint->update();
+    return report;
 }
 
 BodyNow SceneWorld::body(std::size_t k) const

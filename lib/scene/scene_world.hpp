@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flotsam/bullet/bullet_coupling.hpp"
+#include "scene/bullet_joint.hpp"
 #include "scene/bullet_shapes.hpp"
 #include "scene/prepared_scene.hpp"
 
@@ -29,12 +30,15 @@ class SceneWorld {
     /// Of all bodies, as FluidWorld::waterline wants them.
     [[nodiscard]] std::vector<BodyState> body_states() const;
 
-    StepReport step(double dt) { return coupling_->step(dt); }
+    [[nodiscard]] const JointNow& joint(std::size_t k) const { return joints_[k]->now(); }
+
+    StepReport step(double dt);
 
   private:
     void add_fluid(const PreparedScene& prepared);
     void add_walls(const SceneFile& scene, const PreparedScene& prepared);
     void add_bodies(const SceneFile& scene, const PreparedScene& prepared);
+    void add_joints(const SceneFile& scene);
 
     FluidWorld fluid_;
     BulletShapes shapes_;
@@ -43,7 +47,9 @@ class SceneWorld {
     btDbvtBroadphase broadphase_;
     btSequentialImpulseConstraintSolver solver_;
     btDiscreteDynamicsWorld world_;
+    std::unique_ptr<btRigidBody> ground_; ///< what joints to the world hold on to; not in world_
     std::vector<std::unique_ptr<btRigidBody>> walls_, bodies_;
+    std::vector<std::unique_ptr<BulletJoint>> joints_;
     std::unique_ptr<BulletCoupling> coupling_;
 };
 

@@ -26,6 +26,17 @@ struct BodyReport {
     Vec3d torque_fluid_mean = Vec3d::Zero(); ///< about the centre of mass [N m]
 };
 
+/// Where a joint ended, and means over the last quarter of the run of what `b` (or the world) puts on `a` through it, a
+/// motor included.
+struct JointReport {
+    std::string name;
+    std::string type;                  ///< "hinge", "slider" or "ball"
+    std::optional<double> angle_deg;   ///< of a hinge, whole turns included; of a ball in 3-D that turned, in [0, 180]
+    std::optional<double> position;    ///< of a slider [m]
+    Vec3d force_mean = Vec3d::Zero();  ///< [N]
+    Vec3d torque_mean = Vec3d::Zero(); ///< about the joint's point, which goes with `a` [N m]
+};
+
 struct ProbeReport {
     std::string name;
     std::optional<double> mean; ///< over the last quarter; nothing where it met no fluid
@@ -69,6 +80,7 @@ struct RunReport {
     std::uint64_t state_hash = 0;
     MomentumLedger ledger;
     std::vector<BodyReport> bodies;
+    std::vector<JointReport> joints;
     std::vector<ProbeReport> probes;
     std::vector<std::string> notes; ///< what was cut or repaired
     std::string failure;            ///< why the run stopped early; empty: it did not

@@ -75,6 +75,28 @@ struct SceneBody {
     std::optional<Vec3d> inertia;        ///< about the centre of mass, shape's axes [kg m^2]; else of the uniform solid
 };
 
+/// `{"name", "type": "hinge" | "slider" | "ball", "a", "b", "point", "axis", "limits_deg" or "limits", "motor":
+/// {"velocity", "max_torque" or "max_force"}}`. Joins body `a` to body `b`, or to the world. Point and axis are in the
+/// world frame of the pose in which the scene starts, where the joint stands at 0. Positive is, seen from `b`: a hinge
+/// turning `a` about the axis by the right-hand rule, a slider moving `a` along it.
+struct SceneJoint {
+    struct Limits {
+        double low = 0.0, high = 0.0; ///< <= 0 and >= 0 [rad] or [m]
+    };
+    struct Motor {
+        double velocity = 0.0; ///< that it holds as far as its strength goes [rad/s] or [m/s]
+        double strength = 0.0; ///< max_torque [N m] or max_force [N]
+    };
+    std::string name; ///< "joint0" and so on where the file gives none
+    enum class Type { hinge, slider, ball } type = Type::hinge;
+    std::size_t a = 0;            ///< number of the body
+    std::optional<std::size_t> b; ///< of the other one; nothing: the world
+    Vec3d point = Vec3d::Zero();
+    Vec3d axis = Vec3d::Zero();   ///< of length 1; in 2-D y for hinge and ball, in 3-D zero for a ball
+    std::optional<Limits> limits; ///< of hinge or slider
+    std::optional<Motor> motor;   ///< of hinge or slider
+};
+
 /// `{"name", "pressure": [x, y, z]}` in Pa or `{"name", "level": [x, y]}` in m.
 struct SceneProbe {
     std::string name;
@@ -104,7 +126,8 @@ struct SceneOutput {
 
 /// A scene, as its file says it: SI units, Z up. Every field stands for one key of the file; what a file leaves out has
 /// the default written here. Required: `flotsam` (the version, 1), `particle_spacing`, `duration`, `fluids`; a name and
-/// a shape for each body, and for a dynamic one `density` or `mass`.
+/// a shape for each body, and for a dynamic one `density` or `mass`; `type`, `a`, `point` and (hinge, slider) `axis`
+/// for each joint.
 ///
 /// In 2-D (the plane y = 0) points and vectors are [x, z], or [x, y, z] with y = 0; shapes are box [x, z] and disc.
 /// `rotation_deg` is a rotation vector: axis times angle.
@@ -121,6 +144,7 @@ struct SceneFile {
     SceneFluid fluid;
     std::vector<SceneWall> walls;
     std::vector<SceneBody> bodies;
+    std::vector<SceneJoint> joints;
     std::vector<SceneProbe> probes;
     SceneOutput output;
 };

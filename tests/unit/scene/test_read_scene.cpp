@@ -159,7 +159,6 @@ TEST_CASE("bad scenes are refused with the place and what is allowed", "[scene]"
         {"\"fluids\": [", "\"fluids\": [{}, ", {"fluids has 2 entries", "one fluid"}},
         {"\"fluids\": [", "\"fluids\": 3, \"x\": [", {"x is an unknown key"}},
         {"\"crate\"", "\"\"", {"bodies[0].name must be a text"}},
-        {"\"duration\"", "\"joints\": [{\"type\": \"hinge\"}], \"duration\"", {"joints are not in this version"}},
         {"\"duration\"", "\"dimensions\": 4, \"duration\"", {"dimensions must be 2 or 3"}},
         {"\"duration\"", "\"dimensions\": 2.5, \"duration\"", {"dimensions must be 2 or 3"}},
         {"\"duration\"", "\"output\": null, \"duration\"", {"output must be an object"}},
