@@ -82,7 +82,7 @@ void print_files(std::ostream& out, const std::filesystem::path& directory)
     namespace fs = std::filesystem;
     out << "\nIn " << directory.string() << ":\n";
     std::vector<Row> rows{{"report.json", "all of this in numbers"},
-                          {"history.csv", "bodies and probes, frame by frame"}};
+                          {"history.csv", "bodies, joints and probes, frame by frame"}};
     if (fs::exists(directory / "particles.pvd")) rows.push_back({"particles.pvd", "for ParaView"});
     if (fs::exists(directory / "bodies.pvd")) rows.push_back({"bodies.pvd", "for ParaView"});
     if (fs::exists(directory / "pictures")) {
