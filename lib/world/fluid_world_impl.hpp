@@ -117,6 +117,8 @@ struct FluidWorld::Impl {
     std::vector<Wrench> guarded;
     std::vector<Vec4> relax_velocity;
     double last_dt = 0.0;
+    int failed_shifts = 0;       ///< in a row
+    int steps_without_shift = 0; ///< still to come
 
     [[nodiscard]] std::size_t owners() const { return walls.size() + bodies.size(); }
     [[nodiscard]] double spacing() const { return settings.particle_spacing; }
@@ -151,6 +153,7 @@ struct FluidWorld::Impl {
     void respond(Bodies& port, std::span<const Wrench> impulses, std::span<Twist> answers) const;
     void build_mobility(Bodies& port);
     [[nodiscard]] SolveResult solve_shift();
+    [[nodiscard]] bool shift_if_possible(StepReport& report);
     void advance(double dt, Bodies& port, StepReport& report);
     void guard_walls(double dt, Bodies& port, StepReport& report);
     [[nodiscard]] ComplementaritySolver& solver();

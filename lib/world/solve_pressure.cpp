@@ -55,20 +55,38 @@ SolveResult FluidWorld::Impl::solve_shift()
     return result;
 }
 
+/// The shift of the split source; false where the source is the published one, for this step at least. Water that
+/// solids enclose has nowhere to be shifted to, and only the published source moves the solids: a shift that fails is
+/// dropped for it, and where shifts fail step after step, so are those of some steps to come.
+bool FluidWorld::Impl::shift_if_possible(StepReport& report)
+{
+    constexpr int kFailures = 3, kStepsWithout = 50;
+    if (settings.pressure.source == PressureSettings::Source::split && steps_without_shift == 0) {
+        const SolveResult result = solve_shift();
+        report.shift_iterations = result.iterations;
+        report.converged = result.converged;
+        failed_shifts = result.converged ? 0 : failed_shifts + 1;
+        if (result.converged) return true;
+        if (failed_shifts >= kFailures) {
+            failed_shifts = kFailures - 1; // the next one that fails is enough
+            steps_without_shift = kStepsWithout;
+        }
+    } else {
+        steps_without_shift = std::max(0, steps_without_shift - 1);
+    }
+    shift.assign(fluid.size(), Vec4::Zero());
+    return false;
+}
+
 void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& report)
 {
     const std::size_t n = fluid.size();
     const PressureSettings& pressure = settings.pressure;
-    const bool split = pressure.source == PressureSettings::Source::split;
     const double rho0 = settings.rest_density;
     shift_diagonal.resize(n);
-    if (split) {
-        const SolveResult result = solve_shift();
-        report.shift_iterations = result.iterations;
-        report.converged = result.converged;
-    } else {
-        shift.assign(n, Vec4::Zero());
-    }
+    const bool split = shift_if_possible(report);
+    // In place of a shift the error is taken out by velocities, and slowly.
+    const double most_error = pressure.source == PressureSettings::Source::published ? 1e9 : 0.02;
 
     const PressureSystem system(fluid_pairs, contacts, fluid.particle_mass, workers);
     source.resize(n);
@@ -76,7 +94,7 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
     const Scalar inv_dt = static_cast<Scalar>(1.0 / dt);
     workers.for_each(n, [&](std::size_t i) {
         const Scalar error = fluid.density[i] - static_cast<Scalar>(rho0);
-        source[i] += inv_dt * (split ? std::min(Scalar(0), error) : error);
+        source[i] += inv_dt * std::min(static_cast<Scalar>(split ? 0.0 : most_error * rho0), error);
     });
 
     diagonal.resize(n);
