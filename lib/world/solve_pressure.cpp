@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flotsam {
 
@@ -85,8 +86,11 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
     const double rho0 = settings.rest_density;
     shift_diagonal.resize(n);
     const bool split = shift_if_possible(report);
-    // In place of a shift the error is taken out by velocities, and slowly.
-    const double most_error = pressure.source == PressureSettings::Source::published ? 1e9 : 0.02;
+    // What the shift has taken out is none of the velocities' work; in place of a shift they do it, and slowly.
+    const bool published = pressure.source == PressureSettings::Source::published;
+    const Scalar most_error = split       ? Scalar(0)
+                              : published ? std::numeric_limits<Scalar>::infinity()
+                                          : static_cast<Scalar>(0.02 * rho0);
 
     const PressureSystem system(fluid_pairs, contacts, fluid.particle_mass, workers);
     source.resize(n);
@@ -94,7 +98,7 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
     const Scalar inv_dt = static_cast<Scalar>(1.0 / dt);
     workers.for_each(n, [&](std::size_t i) {
         const Scalar error = fluid.density[i] - static_cast<Scalar>(rho0);
-        source[i] += inv_dt * std::min(static_cast<Scalar>(split ? 0.0 : most_error * rho0), error);
+        source[i] += inv_dt * std::min(most_error, error);
     });
 
     diagonal.resize(n);
