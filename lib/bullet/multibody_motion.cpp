@@ -35,6 +35,7 @@ void MultibodyMotion::read(double dt, const Vec3d& gravity, bool is_gravity_in_f
     body_->forwardKinematics(rotations_, vectors_);
 
     accelerate();
+    if (is_asleep_) unaided_.setZero(); // waking clears what Bullet has piled up
     left_out_ = is_asleep_ && is_gravity_in_forces ? gravity : Vec3d::Zero();
     if (is_asleep_ || !is_gravity_in_forces) add_gravity(gravity);
     predict();
@@ -120,6 +121,7 @@ void MultibodyMotion::forget()
 
 void MultibodyMotion::wake()
 {
+    if (is_asleep_) body_->clearForcesAndTorques();
     body_->wakeUp();
     if (body_->getBaseCollider() != nullptr) body_->getBaseCollider()->activate(true);
     for (int k = 0; k < body_->getNumLinks(); ++k)

@@ -43,8 +43,10 @@ class MultibodyMotion {
     [[nodiscard]] const MultibodyMobility& mobility() const { return mobility_; }
 
     /// Adds the forces that bring Bullet's step to predicted + mobility * impulses. `impulses`: one per link [N s].
-    /// An impulse wakes a multibody that sleeps. Bullet damps by the velocity at the start of the step, so that the
-    /// forces' own part is not damped.
+    ///
+    /// Bullet damps by the velocity at the start of the step, so that nothing of these forces is damped. An impulse
+    /// wakes a multibody that sleeps and clears the other forces on it: Bullet does not clear those of a sleeping one,
+    /// so that the gravity of its last step, and all that an application adds, pile up.
     void apply(std::span<const Wrench> impulses);
     /// Takes the forces of apply back, for the next of several steps within one stepSimulation, whose end clears them.
     void withdraw();

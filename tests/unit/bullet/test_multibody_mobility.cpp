@@ -135,8 +135,22 @@ TEST_CASE("what Bullet holds still is held still", "[bullet]")
     CHECK(motion.mobility().responds(2));
     CHECK((dense(motion) - by_bullet(motion)).norm() < kTolerance * dense(motion).norm());
 
-    body.getLink(1).m_mass = 0; // nothing to turn
-    body.getLink(1).m_inertiaLocal.setZero();
+    body.getLink(1).m_mass = 0; // next to nothing to turn
+    body.getLink(1).m_inertiaLocal.setValue(btScalar(1e-17), btScalar(1e-17), btScalar(1e-17));
     motion.read(kStep, scene.gravity, false);
     CHECK_FALSE(motion.mobility().responds(2));
+    CHECK(by_bullet(motion).norm() == 0.0);
+}
+
+TEST_CASE("a point mass on a ball joint, whose spin nothing resists, moves across its rod", "[bullet]")
+{
+    MultibodyScene scene;
+    const btVector3 rod(btScalar(0.1), btScalar(0.2), btScalar(0.3)), none(0, 0, 0);
+    auto made = std::make_unique<btMultiBody>(1, btScalar(0), none, true, true);
+    made->setupSpherical(0, 2, none, -1, btQuaternion::getIdentity(), none, rod);
+    MultibodyMotion motion(scene.add(std::move(made)));
+    motion.read(kStep, scene.gravity, false);
+    const Vec3d along = from_bullet(rod).normalized();
+    const Mat3d expected = 0.5 * (Mat3d::Identity() - along * along.transpose());
+    CHECK((motion.mobility().block(1, 1).topLeftCorner<3, 3>() - expected).norm() < kTolerance);
 }

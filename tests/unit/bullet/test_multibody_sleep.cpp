@@ -13,6 +13,7 @@ btMultiBody& add_sleeping(MultibodyScene& scene, Random& random)
 {
     btMultiBody& body = add_random_multibody(scene, "rsp", false, random);
     body.clearVelocities();
+    add_random_forces(body, random); // Bullet never clears these
     body.goToSleep();
     body.getBaseCollider()->setActivationState(ISLAND_SLEEPING);
     for (int k = 0; k < body.getNumLinks(); ++k) body.getLinkCollider(k)->setActivationState(ISLAND_SLEEPING);
@@ -33,6 +34,7 @@ TEST_CASE("a sleeping multibody rests until an impulse wakes it, which is all th
     motion.apply(std::vector<Wrench>(static_cast<std::size_t>(motion.size())));
     scene.step(kStep);
     CHECK(is_asleep(body)); // without an impulse it sleeps on
+    REQUIRE_FALSE(body.getBaseForce().isZero());
     CHECK(joint_velocity(body).isZero(0.0));
 
     motion.read(kStep, scene.gravity, false);
@@ -100,6 +102,7 @@ TEST_CASE("joint feedback and what Bullet keeps of velocities come through a rea
     btMultiBodyJointFeedback feedback;
     feedback.m_reactionForces.setValue(1, 2, 3, 4, 5, 6);
     body.getLink(1).m_jointFeedback = &feedback;
+    body.useGlobalVelocities(true);
     body.getLink(1).m_absFrameTotVelocity.setValue(1, 2, 3, 4, 5, 6);
     MultibodyMotion motion(body);
     motion.read(kStep, scene.gravity, false);
