@@ -41,7 +41,7 @@ void complete_prismatic(const btMultiBody& body, int link, MultibodyRow& row)
     const btMultibodyLink& joint = body.getLink(link);
     if (joint.m_jointType != btMultibodyLink::ePrismatic) return;
     const Vec3d arm = from_bullet(body.localDirToWorld(link, joint.m_cachedRVector));
-    row.J_b.tail<3>() = -arm.cross(row.J_a.head<3>());
+    row.jacobian_b.tail<3>() = -arm.cross(row.jacobian_a.head<3>());
 }
 
 bool is_of_joint(const btMultiBodyConstraint& constraint)
@@ -116,8 +116,8 @@ MultibodyRow MultibodyRows::converted(btMultiBodyConstraint& constraint, const b
     MultibodyRow result;
     result.a = end(row.m_multiBodyA, row.m_linkA, row.m_solverBodyIdA);
     result.b = end(row.m_multiBodyB, row.m_linkB, row.m_solverBodyIdB);
-    result.J_a = stacked(row.m_contactNormal1, row.m_relpos1CrossNormal);
-    result.J_b = stacked(row.m_contactNormal2, row.m_relpos2CrossNormal);
+    result.jacobian_a = stacked(row.m_contactNormal1, row.m_relpos1CrossNormal);
+    result.jacobian_b = stacked(row.m_contactNormal2, row.m_relpos2CrossNormal);
     if (is_of_joint(constraint)) complete_prismatic(*row.m_multiBodyA, row.m_linkA, result);
     result.lower = static_cast<double>(row.m_lowerLimit);
     result.upper = static_cast<double>(row.m_upperLimit);

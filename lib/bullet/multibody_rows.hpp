@@ -19,11 +19,11 @@ struct RowEnd {
 };
 
 /// One scalar velocity constraint between two twists (world frame, about the centres of mass):
-/// J_a . twist_a + J_b . twist_b + cfm * impulse = target with impulse in [lower, upper]; complementarity at the
-/// limits.
+/// jacobian_a . twist_a + jacobian_b . twist_b + cfm * impulse = target with impulse in [lower, upper]; complementarity
+/// at the limits.
 struct MultibodyRow {
     RowEnd a, b;
-    Vec6d J_a = Vec6d::Zero(), J_b = Vec6d::Zero();
+    Vec6d jacobian_a = Vec6d::Zero(), jacobian_b = Vec6d::Zero();
     double target = 0.0;             ///< [m/s] or [rad/s]
     double cfm = 0.0;                ///< [velocity per impulse]
     double lower = 0.0, upper = 0.0; ///< [N s] or [N m s]
@@ -35,8 +35,11 @@ struct MultibodyRow {
 /// Targets and limits are Bullet's own (createConstraintRows), whose row is: impulse = (error of position and gain k of
 /// velocity) / own mobility. With gain 1 that is a target velocity; with 0 < k < 1 (kd of a btMultiBodyJointMotor,
 /// damping of a btMultiBodySphericalJointMotor) a target velocity and cfm = own mobility (1/k - 1), exactly where no
-/// other row acts on the same joint; with 0 an impulse that is given. Gains above 1 and the clamp of a motor's speed
-/// are taken at the multibody's velocity now, where Bullet takes them after forces.
+/// other row acts on the multibody; with 0 an impulse that is given. Gains above 1 and the clamp of a motor's speed are
+/// taken at the multibody's velocity now, where Bullet takes them after forces.
+///
+/// **Differs** where a rigid body is one of the ends: Bullet's row takes that body's velocity without the forces of the
+/// step, so that it lags behind the target by what they change; ours does not.
 class MultibodyRows {
   public:
     /// Appends the constraint's rows that are active; false for a kind that has no rows between two twists (the gear,

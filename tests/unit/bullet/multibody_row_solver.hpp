@@ -65,7 +65,7 @@ class RowSolver {
     }
     [[nodiscard]] double velocity_of(const MultibodyRow& row)
     {
-        return of_end(row.a, row.J_a) + of_end(row.b, row.J_b);
+        return of_end(row.a, row.jacobian_a) + of_end(row.b, row.jacobian_b);
     }
     [[nodiscard]] double impulse(std::size_t row) const { return impulses_[row]; }
 
@@ -116,8 +116,8 @@ class RowSolver {
     }
     void push(const MultibodyRow& row, double impulse)
     {
-        push(row.a, row.J_a, impulse);
-        push(row.b, row.J_b, impulse);
+        push(row.a, row.jacobian_a, impulse);
+        push(row.b, row.jacobian_b, impulse);
     }
     /// Returns the change of the impulse, of its size.
     double solve(std::size_t k)
