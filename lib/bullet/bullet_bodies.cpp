@@ -84,7 +84,7 @@ BodyState BulletBodies::read_kinematic(Coupled& coupled, double dt) const
 {
     coupled.mobility = {};
     coupled.predicted = coupled.unaided = coupled.kinematic.plan(*coupled.body, dt);
-    return {KinematicMotion::start_pose(*coupled.body), coupled.predicted, false};
+    return {KinematicMotion::start_pose(*coupled.body), coupled.predicted, false, coupled.predicted};
 }
 
 BodyState BulletBodies::read_dynamic(Coupled& coupled, double dt) const
@@ -95,12 +95,14 @@ BodyState BulletBodies::read_dynamic(Coupled& coupled, double dt) const
     coupled.mobility = mobility_of(body);
     coupled.unaided = motion.end;
     coupled.predicted = {};
+    Twist start;
     if (!coupled.is_asleep) {
+        start = {from_bullet(body.getLinearVelocity()), from_bullet(body.getAngularVelocity())};
         const Vec3d turned = motion.end.angular - motion.damped.angular;
         const Vec3d leak = turned - coupled.mobility.held * turned; // about locked axes; exactly 0 without any
         coupled.predicted = {motion.end.linear, motion.end.angular - leak};
     }
-    return {from_bullet(body.getWorldTransform()), coupled.predicted, true};
+    return {from_bullet(body.getWorldTransform()), coupled.predicted, true, start};
 }
 
 void BulletBodies::respond(std::span<const Wrench> impulses, std::span<Twist> twists) const
