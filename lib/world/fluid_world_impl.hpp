@@ -101,6 +101,7 @@ struct FluidWorld::Impl {
     std::vector<Vec3d> centers; ///< of each owner
     std::vector<Twist> twists;  ///< of each owner, predicted
     std::vector<Wrench> pushed; ///< pressure impulses of each owner [N s]
+    std::vector<Wrench> rubbed; ///< viscous impulses of each owner [N s]
     std::vector<Wrench> total;  ///< of each owner over the last step [N s]
     std::vector<Vec4> predicted, change, shift, new_position;
     std::vector<Scalar> multiplier, shift_multiplier, source, diagonal, shift_diagonal;
@@ -131,6 +132,13 @@ struct FluidWorld::Impl {
     [[nodiscard]] bool line_passes_body(std::span<const BodyState> at, double x, double y, double away) const;
     [[nodiscard]] bool touches_body(std::span<const BodyState> at, const Vec3d& point, double away) const;
 
+    // forces_on_bodies.cpp, surface_pressure.cpp
+    [[nodiscard]] bool is_pushed(std::size_t owner) const;
+    [[nodiscard]] ByCause<Wrench> wrenches(std::size_t owner) const;
+    [[nodiscard]] Wrench hydrostatic(std::size_t body, std::optional<double> level) const;
+    template <class Visit>
+    void visit_pushes(std::size_t owner, Visit&& visit) const;
+
     // prepare.cpp
     void prepare(Bodies& port);
     void choose_wall_sides();
@@ -158,5 +166,23 @@ struct FluidWorld::Impl {
     void guard_walls(double dt, Bodies& port, StepReport& report);
     [[nodiscard]] ComplementaritySolver& solver();
 };
+
+/// Calls visit(i, b, force) for the pressure force [N] of each particle i on each sample b of an owner in the last
+/// step, i rising: the terms that Contacts has summed up, m p_i / rho_i^2 rho0 V_b grad W_ib.
+template <class Visit>
+void FluidWorld::Impl::visit_pushes(std::size_t owner, Visit&& visit) const
+{
+    const double share = fluid.particle_mass * settings.rest_density / last_dt;
+    for (std::uint32_t k = contacts.start[owner]; k < contacts.start[owner + 1]; ++k) {
+        const std::uint32_t i = contacts.particle[k];
+        const double push = share * static_cast<double>(multiplier[i]);
+        for (std::uint32_t p = boundary_pairs.start[i]; p < boundary_pairs.start[i + 1]; ++p) {
+            const std::uint32_t b = boundary_pairs.index[p];
+            if (boundary.owner[b] != static_cast<std::int32_t>(owner)) continue;
+            const Vec3d gradient = boundary_pairs.gradient[p].head<3>().cast<double>();
+            visit(i, b, Vec3d(push * static_cast<double>(boundary.volume[b]) * gradient));
+        }
+    }
+}
 
 } // namespace flotsam

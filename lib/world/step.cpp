@@ -157,6 +157,7 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
                                         settings.rest_density, settings.dimensions};
         viscosity.add(viscous, dt, fluid, boundary, fluid_pairs, boundary_pairs, centers, workers, predicted, total);
     }
+    rubbed = total;
     answer.resize(owners());
     respond(port, total, answer);
     for (std::size_t k = walls.size(); k < owners(); ++k) {
