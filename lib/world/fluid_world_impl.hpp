@@ -10,6 +10,7 @@
 #include "sph/forces/viscosity.hpp"
 #include "sph/pressure/complementarity_solver.hpp"
 #include "sph/pressure/pressure_system.hpp"
+#include "world/keep_ledger.hpp"
 #include "world/wall_guard.hpp"
 
 #include <algorithm>
@@ -55,16 +56,6 @@ struct MaxOf {
     }
 };
 
-/// Sum of vectors that starts at zero, for ordered_sum.
-struct Sum3 {
-    Vec3d value = Vec3d::Zero();
-    Sum3& operator+=(const Sum3& other)
-    {
-        value += other.value;
-        return *this;
-    }
-};
-
 struct FluidWorld::Impl {
     explicit Impl(const FluidWorldSettings& settings);
 
@@ -103,7 +94,7 @@ struct FluidWorld::Impl {
     std::vector<Wrench> pushed; ///< pressure impulses of each owner [N s]
     std::vector<Wrench> rubbed; ///< viscous impulses of each owner [N s]
     std::vector<Wrench> total;  ///< of each owner over the last step [N s]
-    std::vector<Vec4> predicted, change, shift, new_position;
+    std::vector<Vec4> predicted, change, shift, new_position, new_velocity;
     std::vector<Scalar> multiplier, shift_multiplier, source, diagonal, shift_diagonal;
     std::vector<Eigen::Matrix<double, 6, 6>> mobility;
     std::vector<Vec4> sort_vec4;
@@ -111,12 +102,12 @@ struct FluidWorld::Impl {
     std::vector<std::uint32_t> sort_id;
     std::vector<double> sums;
     std::vector<MaxOf> max_scratch;
-    std::vector<Sum3> sum3_scratch;
     std::vector<Wrench> unit;
     std::vector<Twist> answer;
     std::vector<GuardedMotion> motion;
     std::vector<Wrench> guarded;
-    std::vector<Vec4> relax_velocity;
+    std::vector<LedgerSums> ledger_scratch;
+    Ledger ledger; ///< of all steps
     double last_dt = 0.0;
     int failed_shifts = 0;       ///< in a row
     int steps_without_shift = 0; ///< still to come
@@ -165,6 +156,11 @@ struct FluidWorld::Impl {
     void advance(double dt, Bodies& port, StepReport& report);
     void guard_walls(double dt, Bodies& port, StepReport& report);
     [[nodiscard]] ComplementaritySolver& solver();
+
+    // keep_ledger.cpp
+    [[nodiscard]] LedgerSums ledger_terms(std::size_t i, double dt) const;
+    void book_owner(std::size_t k, ByCause<Wrench>& impulses, ByCause<double>& work) const;
+    void keep_ledger(double dt, Bodies& port, StepReport& report);
 };
 
 /// Calls visit(i, b, force) for the pressure force [N] of each particle i on each sample b of an owner in the last

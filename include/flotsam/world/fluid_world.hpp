@@ -115,6 +115,8 @@ class FluidWorld {
     [[nodiscard]] Vec3d wall_force(int wall) const;
     /// The same by cause, with torques about the world's origin.
     [[nodiscard]] ByCause<Wrench> wall_wrench(int wall) const;
+    /// The ledgers of all steps since the first, added up.
+    [[nodiscard]] const Ledger& ledger() const;
     /// Pressure [Pa] at a point, of the forces between the particles around it, each continued along the hydrostatic
     /// gradient to the point; 0 where there is no fluid.
     [[nodiscard]] double pressure_at(const Vec3d& point) const;
