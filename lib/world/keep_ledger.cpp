@@ -7,7 +7,6 @@ namespace flotsam {
 LedgerSums& LedgerSums::operator+=(const LedgerSums& other)
 {
     velocity_before += other.velocity_before;
-    velocity_advanced += other.velocity_advanced;
     velocity_after += other.velocity_after;
     position_before += other.position_before;
     position_after += other.position_after;
@@ -15,6 +14,7 @@ LedgerSums& LedgerSums::operator+=(const LedgerSums& other)
     spin_after += other.spin_after;
     shift += other.shift;
     shift_spin += other.shift_spin;
+    drift += other.drift;
     put_back += other.put_back;
     speed_sq_before += other.speed_sq_before;
     speed_sq_after += other.speed_sq_after;
@@ -28,27 +28,27 @@ LedgerSums& LedgerSums::operator+=(const LedgerSums& other)
 /// to the bit, so that particles that it left alone give nothing to its sum.
 LedgerSums FluidWorld::Impl::ledger_terms(std::size_t i, double dt) const
 {
-    const Vec4 advanced = predicted[i] + change[i];
-    const Vec4 moved = fluid.position[i] + shift[i] + static_cast<Scalar>(dt) * advanced;
+    const Vec4 sum = predicted[i] + change[i];
+    const Vec4 place = fluid.position[i] + shift[i] + static_cast<Scalar>(dt) * sum;
     const auto wide = [](const Vec4& v) { return Vec3d(v.head<3>().cast<double>()); };
-    const Vec3d before = wide(fluid.velocity[i]), after = wide(new_velocity[i]);
+    const Vec3d before = wide(fluid.velocity[i]), advanced = wide(sum), after = wide(new_velocity[i]);
     const Vec3d mean = 0.5 * (before + after);
     LedgerSums t;
     t.velocity_before = before;
-    t.velocity_advanced = wide(advanced);
     t.velocity_after = after;
     t.position_before = wide(fluid.position[i]);
     t.position_after = wide(new_position[i]);
     t.spin_before = t.position_before.cross(before);
     t.spin_after = t.position_after.cross(after);
     t.shift = wide(shift[i]);
-    t.shift_spin = t.shift.cross(t.velocity_advanced);
-    t.put_back = t.position_after - wide(moved);
+    t.shift_spin = t.shift.cross(advanced);
+    t.drift = wide(place) - t.position_before - t.shift - dt * mean;
+    t.put_back = t.position_after - wide(place);
     t.speed_sq_before = before.squaredNorm();
     t.speed_sq_after = after.squaredNorm();
     t.viscous = (wide(predicted[i]) - before - dt * settings.gravity).dot(mean);
     t.pressure = wide(change[i]).dot(mean);
-    t.guard = (after - t.velocity_advanced).dot(mean);
+    t.guard = (after - advanced).dot(mean);
     return t;
 }
 
@@ -99,13 +99,12 @@ void FluidWorld::Impl::keep_ledger(double dt, Bodies& port, StepReport& report)
         else
             book_owner(k, out.bodies, energy.bodies);
     }
-    const Vec3d mean_velocity = 0.5 * (sum.velocity_before + sum.velocity_after);
-    energy.gravity = m * dt * g.dot(mean_velocity);
+    energy.gravity = 0.5 * m * dt * g.dot(sum.velocity_before + sum.velocity_after);
     energy.viscous = -m * sum.viscous - energy.walls.viscous - energy.bodies.viscous;
     energy.compression = -m * sum.pressure - energy.walls.pressure - energy.bodies.pressure;
     energy.guard = -m * sum.guard + m * g.dot(sum.put_back) - energy.walls.guard - energy.bodies.guard;
     energy.shift = -m * g.dot(sum.shift);
-    energy.integration = m * dt * g.dot(mean_velocity - sum.velocity_advanced);
+    energy.integration = -m * g.dot(sum.drift);
     ledger += out;
 }
 

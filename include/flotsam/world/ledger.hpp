@@ -30,7 +30,9 @@ struct EnergyLedger {
     double compression = 0.0; ///< lost by pressure against changes of density (a splash), which store nothing
     double guard = 0.0;       ///< lost as the guard stopped particles
     double shift = 0.0;       ///< potential energy gained by the position shift
-    double integration = 0.0; ///< gained, as positions move with the velocity of the step's end; swings with the flow
+    /// Potential energy gained as positions move with the velocity of the step's end, not its mean (swings with the
+    /// flow, -dt g . momentum / 2), and are rounded to single precision.
+    double integration = 0.0;
 
     EnergyLedger& operator+=(const EnergyLedger& other);
 };
@@ -55,7 +57,7 @@ struct LedgerScales {
 ///     end - start = shift + integration - walls - bodies - viscous - compression - guard - removed   (energy)
 ///
 /// The two sides are reckoned apart: the left from the particles, impulses on solids from what these were given. All
-/// sums are in double, in a fixed order; the errors are the rounding of velocities and positions in single precision.
+/// sums are in double, in a fixed order; the errors are the rounding of velocities in single precision.
 struct Ledger {
     double seconds = 0.0;
     FluidTotals start, end;
