@@ -3,8 +3,6 @@
 #include "support/catch.hpp"
 #include "support/free_bodies.hpp"
 
-#include <numeric>
-
 using namespace flotsam;
 using namespace flotsam::test;
 
@@ -32,9 +30,11 @@ void check_same(const FluidTotals& a, const FluidTotals& b, const LedgerScales& 
     CHECK(a.volume == Approx(b.volume).epsilon(1e-12));
 }
 
-/// Velocities and positions are single precision: what a step rounds is 6e-8 of them, and 1e-5 of what is exchanged
-/// leaves room for pressures that are much larger than what they leave.
-void check_closed(const Ledger& ledger, double tolerance)
+/// Asked for are 1e-5 of what is exchanged. Velocities are single precision, rounded by up to 6e-8 of themselves in
+/// each step and by chance up or down; runs ended within 8e-8.
+constexpr double kTolerance = 1e-6;
+
+void check_closed(const Ledger& ledger)
 {
     const LedgerErrors errors = ledger.errors();
     const LedgerScales scales = ledger.scales();
@@ -48,9 +48,9 @@ void check_closed(const Ledger& ledger, double tolerance)
                             << e.bodies.pressure << " " << e.bodies.viscous << " " << e.bodies.guard << ", viscous "
                             << e.viscous << ", compression " << e.compression << ", guard " << e.guard << ", shift "
                             << e.shift << ", integration " << e.integration << " J");
-    CHECK(errors.momentum.norm() < tolerance * scales.momentum);
-    CHECK(errors.angular_momentum.norm() < tolerance * scales.angular_momentum);
-    CHECK(std::abs(errors.energy) < tolerance * scales.energy);
+    CHECK(errors.momentum.norm() < kTolerance * scales.momentum);
+    CHECK(errors.angular_momentum.norm() < kTolerance * scales.angular_momentum);
+    CHECK(std::abs(errors.energy) < kTolerance * scales.energy);
     CHECK(errors.volume == 0.0);
     CHECK(ledger.removed.momentum.norm() < 1e-12 * scales.momentum);
     CHECK(ledger.energy.walls.total() == 0.0);
@@ -113,7 +113,7 @@ TEST_CASE("the ledger of a tank with a box in it closes", "[ledger][property]")
     step_watched(world, bodies, 0.5);
     const Ledger& ledger = world.ledger();
     REQUIRE(ledger.energy.bodies.total() < -0.1 * box.mass * 9.81 * 0.12); // the water took what it fell
-    check_closed(ledger, 1e-5);
+    check_closed(ledger);
     // The box: its energy is what the water gave, but for its own integration, -m g dt v / 2 at both ends.
     const double after = energy(box) + box.mass * 9.81 * box.pose.position.z();
     CAPTURE(before, after, ledger.energy.bodies.total());
@@ -133,7 +133,7 @@ TEST_CASE("the ledger of a dam break closes", "[ledger][property]")
     const Ledger& ledger = world.ledger();
     const double fallen = ledger.start.potential - ledger.end.potential;
     REQUIRE(fallen > 0.2 * ledger.start.potential);
-    check_closed(ledger, 1e-5);
+    check_closed(ledger);
     // Nothing drives it but gravity: what fell is motion or lost, by causes that can lose only.
     CHECK(ledger.energy.viscous > 0.0);
     CHECK(ledger.energy.compression > 0.0);
@@ -159,7 +159,7 @@ TEST_CASE("the ledger of a body and water alone closes", "[ledger][property]")
     step_watched(world, bodies, 0.06);
     const Ledger& ledger = world.ledger();
     REQUIRE(std::abs(ledger.energy.bodies.total()) > 0.01 * before);
-    check_closed(ledger, 1e-5);
+    check_closed(ledger);
     CHECK(ledger.energy.gravity == 0.0);
     CHECK(ledger.energy.integration == 0.0);
     CHECK(ledger.energy.bodies.viscous < 0.0);
@@ -186,6 +186,10 @@ TEST_CASE("pressure does no net work on a still tank", "[ledger][property]")
     CAPTURE(work / weight, (b.gravity - a.gravity) / weight, (b.viscous - a.viscous) / weight,
             (b.shift - a.shift) / weight, (b.integration - a.integration) / weight, ledger.end.kinetic / weight,
             (ledger.end.potential - before.end.potential) / weight, ledger.errors().energy / weight);
-    CHECK(std::abs(work) < 0.01 * 0.02 * weight);
-    check_closed(ledger, 1e-5);
+    // In a second less than lifts the water by a hundredth of a spacing; 0.0010 (3-D) and 0.0014 (2-D) when written,
+    // taken from the flow, not given: it is what its small motion loses. Nor does the water gain by all causes
+    // together.
+    CHECK(std::abs(work) < 0.01 * world.settings().particle_spacing * weight);
+    CHECK(ledger.end.energy() < before.end.energy());
+    check_closed(ledger);
 }
