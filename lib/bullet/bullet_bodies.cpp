@@ -180,7 +180,7 @@ void BulletBodies::read(double dt, std::span<BodyState> states)
     guess_impulses(dt);
     motion_.solve(impulses_, 0.1 * revision_tolerance());
     for (std::size_t k = 0; k < bodies_.size(); ++k)
-        states[k] = {bodies_[k].pose, motion_.predicted()[k], bodies_[k].is_dynamic};
+        states[k] = {bodies_[k].pose, motion_.predicted()[k], bodies_[k].is_dynamic, bodies_[k].twist};
 }
 
 /// Which joints and contacts will hold is guessed with the forces of the last Bullet step.

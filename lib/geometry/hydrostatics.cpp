@@ -1,6 +1,7 @@
 #include "flotsam/geometry/hydrostatics.hpp"
 
 #include "flotsam/core/contracts.hpp"
+#include "geometry/plane_cut.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -95,6 +96,36 @@ Submerged submerged_part(const TriangleMesh& closed, const Pose& pose, double wa
 double lowest_point(const TriangleMesh& mesh, const Pose& pose)
 {
     return height_range(mesh, pose).low;
+}
+
+// As above: the water line spans no area with an origin in it. Outside lies to the right of the way along, so what a
+// line goes around on the water's side counts positive.
+Submerged submerged_section(const TriangleMesh& closed, const Pose& pose, double water_level)
+{
+    const Vec2d origin(pose.position.x(), water_level);
+    double area = 0.0, waterline = 0.0;
+    Vec2d moment = Vec2d::Zero();
+    for (const CutLine& line : cut_at_y0(transformed(closed, pose))) {
+        for (std::size_t k = 0; k < line.points.size(); ++k) {
+            Vec2d a = line.points[k] - origin;
+            Vec2d b = line.points[(k + 1) % line.points.size()] - origin;
+            if (a.y() >= 0.0 && b.y() >= 0.0) continue;
+            const Vec2d crossing(a.x() + (b.x() - a.x()) * (a.y() / (a.y() - b.y())), 0.0); // used if there is one
+            if (a.y() > 0.0) a = crossing;
+            if (b.y() > 0.0) b = crossing;
+            const double piece = 0.5 * (a.x() * b.y() - a.y() * b.x());
+            area += piece;
+            moment += piece * (a + b) / 3.0;
+            waterline += b.x() - a.x();
+        }
+    }
+    Submerged part;
+    part.waterplane_area = std::max(waterline, 0.0);
+    if (!(area > 0.0)) return part;
+    const Vec2d center = origin + moment / area;
+    part.volume = area;
+    part.center_of_buoyancy = Vec3d(center.x(), 0.0, center.y());
+    return part;
 }
 
 // Newton with the waterplane area as the derivative, kept inside a shrinking bracket: the volume never falls with the

@@ -44,18 +44,83 @@ Json seconds_json(const StageSeconds& s)
             {"pressure", s.pressure}, {"advance", s.advance},       {"walls", s.walls}};
 }
 
-Json ledger_json(const MomentumLedger& ledger)
+Json by_cause(const ByCause<double>& value)
+{
+    return {{"pressure", number(value.pressure)}, {"viscous", number(value.viscous)}, {"guard", number(value.guard)}};
+}
+Json by_cause(const ByCause<Wrench>& value, Vec3d Wrench::*part)
+{
+    return {{"pressure", vector(value.pressure.*part)},
+            {"viscous", vector(value.viscous.*part)},
+            {"guard", vector(value.guard.*part)}};
+}
+
+/// What is left over, by the largest of the terms.
+double relative(double error, double scale)
+{
+    return scale > 0.0 ? std::abs(error) / scale : 0.0;
+}
+
+Json angular_json(const Ledger& ledger)
+{
+    return {{"start", vector(ledger.start.angular_momentum)},
+            {"end", vector(ledger.end.angular_momentum)},
+            {"gravity", vector(ledger.gravity.angular)},
+            {"walls", by_cause(ledger.walls, &Wrench::angular)},
+            {"bodies", by_cause(ledger.bodies, &Wrench::angular)},
+            {"shift", vector(ledger.shift)},
+            {"removed", vector(ledger.removed.angular_momentum)},
+            {"error_relative",
+             number(relative(ledger.errors().angular_momentum.norm(), ledger.scales().angular_momentum))}};
+}
+
+Json energy_json(const Ledger& ledger)
+{
+    const EnergyLedger& energy = ledger.energy;
+    return {{"kinetic_start", number(ledger.start.kinetic)},
+            {"kinetic_end", number(ledger.end.kinetic)},
+            {"potential_start", number(ledger.start.potential)},
+            {"potential_end", number(ledger.end.potential)},
+            {"gravity", number(energy.gravity)},
+            {"walls", by_cause(energy.walls)},
+            {"bodies", by_cause(energy.bodies)},
+            {"viscous", number(energy.viscous)},
+            {"compression", number(energy.compression)},
+            {"guard", number(energy.guard)},
+            {"shift", number(energy.shift)},
+            {"integration", number(energy.integration)},
+            {"removed", number(ledger.removed.energy())},
+            {"error_relative", number(relative(ledger.errors().energy, ledger.scales().energy))}};
+}
+
+Json volume_json(const Ledger& ledger)
+{
+    return {{"start", number(ledger.start.volume)},
+            {"end", number(ledger.end.volume)},
+            {"removed", number(ledger.removed.volume)},
+            {"compressed", number(ledger.compressed)},
+            {"error_relative", number(relative(ledger.errors().volume, ledger.start.volume))}};
+}
+
+Json ledger_json(const Ledger& ledger, const std::vector<Vec3d>& wall_force_mean)
 {
     Json forces = Json::array();
-    for (const Vec3d& force : ledger.wall_force_mean) forces.push_back(vector(force));
-    return {{"gravity_impulse", vector(ledger.gravity_impulse)},
-            {"wall_impulse", vector(ledger.wall_impulse)},
-            {"body_impulse", vector(ledger.body_impulse)},
-            {"guard_impulse", vector(ledger.guard_impulse)},
-            {"fluid_momentum_start", vector(ledger.fluid_momentum_start)},
-            {"fluid_momentum_end", vector(ledger.fluid_momentum_end)},
-            {"momentum_error_relative", number(ledger.momentum_error_relative)},
-            {"wall_force_mean", forces}};
+    for (const Vec3d& force : wall_force_mean) forces.push_back(vector(force));
+    return {{"gravity_impulse", vector(ledger.gravity.linear)},
+            {"wall_impulse", vector(ledger.walls.total().linear)},
+            {"body_impulse", vector(ledger.bodies.total().linear)},
+            {"guard_impulse", vector(ledger.walls.guard.linear + ledger.bodies.guard.linear)},
+            {"fluid_momentum_start", vector(ledger.start.momentum)},
+            {"fluid_momentum_end", vector(ledger.end.momentum)},
+            {"momentum_error_relative", number(relative(ledger.errors().momentum.norm(), ledger.scales().momentum))},
+            {"wall_force_mean", forces},
+            {"momentum",
+             {{"walls", by_cause(ledger.walls, &Wrench::linear)},
+              {"bodies", by_cause(ledger.bodies, &Wrench::linear)},
+              {"removed", vector(ledger.removed.momentum)}}},
+            {"angular_momentum", angular_json(ledger)},
+            {"energy", energy_json(ledger)},
+            {"volume", volume_json(ledger)}};
 }
 
 Json body_json(const BodyReport& body)
@@ -105,7 +170,7 @@ std::string report_as_json(const RunReport& report)
                  {"leaks_stopped", report.leaks_stopped},
                  {"peak_memory_bytes", report.peak_memory_bytes},
                  {"state_hash", hexadecimal(report.state_hash)},
-                 {"ledger", ledger_json(report.ledger)},
+                 {"ledger", ledger_json(report.ledger, report.wall_force_mean)},
                  {"bodies", Json::array()},
                  {"joints", Json::array()},
                  {"probes", Json::array()},

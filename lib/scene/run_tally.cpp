@@ -19,13 +19,6 @@ bool is_level(const Vec3d& gravity)
     return gravity.z() < 0.0 && gravity.head<2>().norm() < 1e-6 * gravity.norm();
 }
 
-Vec3d momentum(const FluidState& fluid)
-{
-    Vec3d sum = Vec3d::Zero();
-    for (const Vec4& velocity : fluid.velocity) sum += velocity.head<3>().cast<double>();
-    return fluid.particle_mass * sum;
-}
-
 void add_seconds(StageSeconds& sum, const StageSeconds& step)
 {
     sum.bodies += step.bodies;
@@ -50,7 +43,6 @@ RunTally::RunTally(const SceneFile& scene, const PreparedScene& prepared, const 
       wall_forces_(scene.walls.size(), TimeMean<Vec3d>(Vec3d::Zero())),
       probes_(scene.probes.size(), TimeMean<double>(0.0)), bodies_(scene.bodies.size()), joints_(scene.joints.size())
 {
-    ledger_.fluid_momentum_start = ledger_.fluid_momentum_end = momentum(world.fluid().fluid());
 }
 
 void RunTally::add(const StepReport& step)
@@ -70,11 +62,6 @@ void RunTally::add_totals(const StepReport& step)
     leaked_ = std::max(leaked_, step.leaked);
     compression_max_ = std::max(compression_max_, step.compression_max);
     add_seconds(seconds_, step.seconds);
-    ledger_.gravity_impulse += step.gravity_impulse;
-    ledger_.wall_impulse += step.wall_impulse;
-    ledger_.body_impulse += step.body_impulse;
-    ledger_.guard_impulse += step.guard_impulse;
-    ledger_.fluid_momentum_end = step.fluid_momentum;
 }
 
 void RunTally::add_last_quarter(const StepReport& step)
@@ -118,7 +105,9 @@ RunReport RunTally::report() const
     report.steps = steps_;
     report.stage_seconds = seconds_;
     report_fluid(report);
-    report.ledger = report_ledger();
+    report.ledger = world_.fluid().ledger();
+    for (const TimeMean<Vec3d>& force : wall_forces_)
+        report.wall_force_mean.push_back(force.mean().value_or(Vec3d::Zero()));
     for (std::size_t k = 0; k < bodies_.size(); ++k) report.bodies.push_back(report_body(k));
     for (std::size_t k = 0; k < joints_.size(); ++k) report.joints.push_back(report_joint(k));
     for (std::size_t k = 0; k < probes_.size(); ++k)
@@ -179,20 +168,6 @@ JointReport RunTally::report_joint(std::size_t k) const
     report.force_mean = joints_[k].force.mean().value_or(Vec3d::Zero());
     report.torque_mean = joints_[k].torque.mean().value_or(Vec3d::Zero());
     return report;
-}
-
-MomentumLedger RunTally::report_ledger() const
-{
-    MomentumLedger ledger = ledger_;
-    const Vec3d gained = ledger.fluid_momentum_end - ledger.fluid_momentum_start;
-    const Vec3d given = ledger.wall_impulse + ledger.body_impulse;
-    const double error = (gained + given - ledger.gravity_impulse).norm();
-    const double scale = std::max({gained.norm(), ledger.wall_impulse.norm(), ledger.body_impulse.norm(),
-                                   ledger.gravity_impulse.norm(), ledger.fluid_momentum_start.norm()});
-    ledger.momentum_error_relative = scale > 0.0 ? error / scale : 0.0;
-    for (const TimeMean<Vec3d>& force : wall_forces_)
-        ledger.wall_force_mean.push_back(force.mean().value_or(Vec3d::Zero()));
-    return ledger;
 }
 
 Vec3d rotation_vector(const Quatd& rotation)

@@ -58,7 +58,6 @@ class RunTally {
     void report_fluid(RunReport& report) const;
     [[nodiscard]] BodyReport report_body(std::size_t k) const;
     [[nodiscard]] JointReport report_joint(std::size_t k) const;
-    [[nodiscard]] MomentumLedger report_ledger() const;
 
     const SceneFile& scene_;
     const PreparedScene& prepared_;
@@ -67,7 +66,6 @@ class RunTally {
     int most_iterations_ = 0, leaked_ = 0;
     double compression_max_ = 0.0, next_draft_ = 0.0;
     StageSeconds seconds_;
-    MomentumLedger ledger_;
     TimeMean<double> compression_{0.0}, waterline_{0.0};
     std::vector<TimeMean<Vec3d>> wall_forces_;
     std::vector<TimeMean<double>> probes_;

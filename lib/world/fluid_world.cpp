@@ -223,6 +223,11 @@ Vec3d FluidWorld::wall_force(int wall) const
     return impl_->total[static_cast<std::size_t>(wall)].linear / impl_->last_dt;
 }
 
+const Ledger& FluidWorld::ledger() const
+{
+    return impl_->ledger;
+}
+
 const std::vector<std::string>& FluidWorld::notes() const
 {
     return impl_->notes;

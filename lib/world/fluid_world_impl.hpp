@@ -10,6 +10,7 @@
 #include "sph/forces/viscosity.hpp"
 #include "sph/pressure/complementarity_solver.hpp"
 #include "sph/pressure/pressure_system.hpp"
+#include "world/keep_ledger.hpp"
 #include "world/wall_guard.hpp"
 
 #include <algorithm>
@@ -58,16 +59,6 @@ struct MaxOf {
     }
 };
 
-/// Sum of vectors that starts at zero, for ordered_sum.
-struct Sum3 {
-    Vec3d value = Vec3d::Zero();
-    Sum3& operator+=(const Sum3& other)
-    {
-        value += other.value;
-        return *this;
-    }
-};
-
 struct FluidWorld::Impl {
     explicit Impl(const FluidWorldSettings& settings);
 
@@ -105,9 +96,10 @@ struct FluidWorld::Impl {
     std::vector<Vec3d> centers;  ///< of each owner
     std::vector<Twist> twists;   ///< of each owner, predicted
     std::vector<Wrench> pushed;  ///< pressure impulses of each owner [N s]
+    std::vector<Wrench> rubbed;  ///< viscous impulses of each owner [N s]
     std::vector<Wrench> total;   ///< of each owner over the last step [N s]
     std::vector<Wrench> offered; ///< total and pushed, while joints and contacts are asked about them [N s]
-    std::vector<Vec4> predicted, change, shift, new_position;
+    std::vector<Vec4> predicted, change, shift, new_position, new_velocity;
     std::vector<Scalar> multiplier, shift_multiplier, source, diagonal, shift_diagonal;
     std::vector<Eigen::Matrix<double, 6, 6>> mobility;
     std::vector<Vec4> sort_vec4;
@@ -115,12 +107,12 @@ struct FluidWorld::Impl {
     std::vector<std::uint32_t> sort_id;
     std::vector<double> sums;
     std::vector<MaxOf> max_scratch;
-    std::vector<Sum3> sum3_scratch;
     std::vector<Wrench> unit;
     std::vector<Twist> answer;
     std::vector<GuardedMotion> motion;
     std::vector<Wrench> guarded;
-    std::vector<Vec4> relax_velocity;
+    std::vector<LedgerSums> ledger_scratch;
+    Ledger ledger; ///< of all steps
     double last_dt = 0.0;
     int failed_shifts = 0;       ///< in a row
     int steps_without_shift = 0; ///< still to come
@@ -135,6 +127,13 @@ struct FluidWorld::Impl {
     [[nodiscard]] double gauge_pressure(std::size_t i) const;
     [[nodiscard]] bool line_passes_body(std::span<const BodyState> at, double x, double y, double away) const;
     [[nodiscard]] bool touches_body(std::span<const BodyState> at, const Vec3d& point, double away) const;
+
+    // forces_on_bodies.cpp, surface_pressure.cpp
+    [[nodiscard]] bool is_pushed(std::size_t owner) const;
+    [[nodiscard]] ByCause<Wrench> wrenches(std::size_t owner) const;
+    [[nodiscard]] Wrench hydrostatic(std::size_t body, std::optional<double> level) const;
+    template <class Visit>
+    void visit_pushes(std::size_t owner, Visit&& visit) const;
 
     // prepare.cpp
     void prepare(Bodies& port);
@@ -183,6 +182,29 @@ struct FluidWorld::Impl {
     void advance(double dt, Bodies& port, StepReport& report);
     void guard_walls(double dt, Bodies& port, StepReport& report);
     [[nodiscard]] ComplementaritySolver& solver();
+
+    // keep_ledger.cpp
+    [[nodiscard]] LedgerSums ledger_terms(std::size_t i, double dt) const;
+    void book_owner(std::size_t k, ByCause<Wrench>& impulses, ByCause<double>& work) const;
+    void keep_ledger(double dt, Bodies& port, StepReport& report);
 };
+
+/// Calls visit(i, b, force) for the pressure force [N] of each particle i on each sample b of an owner in the last
+/// step, i rising: the terms that Contacts has summed up, m p_i / rho_i^2 rho0 V_b grad W_ib.
+template <class Visit>
+void FluidWorld::Impl::visit_pushes(std::size_t owner, Visit&& visit) const
+{
+    const double share = fluid.particle_mass * settings.rest_density / last_dt;
+    for (std::uint32_t k = contacts.start[owner]; k < contacts.start[owner + 1]; ++k) {
+        const std::uint32_t i = contacts.particle[k];
+        const double push = share * static_cast<double>(multiplier[i]);
+        for (std::uint32_t p = boundary_pairs.start[i]; p < boundary_pairs.start[i + 1]; ++p) {
+            const std::uint32_t b = boundary_pairs.index[p];
+            if (boundary.owner[b] != static_cast<std::int32_t>(owner)) continue;
+            const Vec3d gradient = boundary_pairs.gradient[p].head<3>().cast<double>();
+            visit(i, b, Vec3d(push * static_cast<double>(boundary.volume[b]) * gradient));
+        }
+    }
+}
 
 } // namespace flotsam

@@ -220,11 +220,11 @@ void FluidWorld::Impl::relax(int max_rounds)
 
 void FluidWorld::Impl::guard_relaxation()
 {
-    relax_velocity.assign(fluid.size(), Vec4::Zero());
+    new_velocity.assign(fluid.size(), Vec4::Zero());
     motion.resize(owners());
     guarded.assign(owners(), Wrench{});
     for (std::size_t k = 0; k < bodies.size(); ++k) motion[walls.size() + k] = {states[k].pose, states[k].pose, {}};
-    guard.stop(fluid.position, new_position, relax_velocity, motion, fluid.particle_mass, workers, guarded);
+    guard.stop(fluid.position, new_position, new_velocity, motion, fluid.particle_mass, workers, guarded);
 }
 
 } // namespace flotsam

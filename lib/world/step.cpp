@@ -150,6 +150,7 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
                                         settings.rest_density, settings.dimensions};
         viscosity.add(viscous, dt, fluid, boundary, fluid_pairs, boundary_pairs, centers, workers, predicted, total);
     }
+    rubbed = total;
     predict_twists(port);
 }
 
@@ -176,16 +177,19 @@ void FluidWorld::Impl::advance(double dt, Bodies& port, StepReport& report)
     const std::size_t n = fluid.size();
     const Scalar step_size = static_cast<Scalar>(dt);
     new_position.resize(n);
+    new_velocity.resize(n);
     workers.for_each(n, [&](std::size_t i) {
-        fluid.velocity[i] = predicted[i] + change[i];
-        new_position[i] = fluid.position[i] + shift[i] + step_size * fluid.velocity[i];
+        new_velocity[i] = predicted[i] + change[i];
+        new_position[i] = fluid.position[i] + shift[i] + step_size * new_velocity[i];
         new_position[i][3] = 0;
     });
     {
         const StageClock clock(report.seconds.walls);
         guard_walls(dt, port, report);
     }
+    keep_ledger(dt, port, report);
     fluid.position.swap(new_position);
+    fluid.velocity.swap(new_velocity);
     const double fastest_sq =
         workers
             .ordered_sum<MaxOf>(
@@ -193,12 +197,7 @@ void FluidWorld::Impl::advance(double dt, Bodies& port, StepReport& report)
                 [&](std::size_t i) { return MaxOf{static_cast<double>(fluid.velocity[i].squaredNorm())}; })
             .value;
     report.max_speed = std::sqrt(fastest_sq);
-    report.fluid_momentum =
-        fluid.particle_mass *
-        workers
-            .ordered_sum<Sum3>(n, sum3_scratch,
-                               [&](std::size_t i) { return Sum3{fluid.velocity[i].head<3>().cast<double>()}; })
-            .value;
+    report.fluid_momentum = report.ledger.end.momentum;
     max_pressure = workers
                        .ordered_sum<MaxOf>(n, max_scratch,
                                            [&](std::size_t i) { return MaxOf{static_cast<double>(fluid.pressure[i])}; })
@@ -227,7 +226,7 @@ void FluidWorld::Impl::guard_walls(double dt, Bodies& port, StepReport& report)
         bodies[k].last_pose = motion[owner].after;
     }
     const GuardReport guard_report =
-        guard.stop(fluid.position, new_position, fluid.velocity, motion, fluid.particle_mass, workers, guarded);
+        guard.stop(fluid.position, new_position, new_velocity, motion, fluid.particle_mass, workers, guarded);
     report.leaks_stopped = guard_report.stopped;
     report.leaked = guard_report.leaked;
     for (std::size_t k = 0; k < owners(); ++k) {

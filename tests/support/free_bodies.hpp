@@ -50,7 +50,7 @@ class FreeBodies final : public Bodies {
         for (std::size_t k = 0; k < bodies.size(); ++k) {
             Twist predicted = bodies[k].twist();
             predicted.linear += dt * gravity_;
-            states[k] = {bodies[k].pose, predicted, true};
+            states[k] = {bodies[k].pose, predicted, true, bodies[k].twist()};
         }
     }
     void respond(std::span<const Wrench> impulses, std::span<Twist> twists) const override

@@ -66,7 +66,7 @@ struct Twist {
     return {pose.position + dt * twist.linear, (rotation * pose.orientation).normalized()};
 }
 
-/// Force and torque, or their impulses, about a body's centre of mass, world frame.
+/// Force and torque, or their impulses, about a body's centre of mass (unless said otherwise), world frame.
 struct Wrench {
     Vec3d linear = Vec3d::Zero();  ///< [N] or [N s]
     Vec3d angular = Vec3d::Zero(); ///< [N m] or [N m s]
@@ -77,7 +77,17 @@ struct Wrench {
         angular += other.angular;
         return *this;
     }
+    [[nodiscard]] Wrench operator+(const Wrench& other) const
+    {
+        return {linear + other.linear, angular + other.angular};
+    }
+    [[nodiscard]] Wrench operator-(const Wrench& other) const
+    {
+        return {linear - other.linear, angular - other.angular};
+    }
     [[nodiscard]] Wrench operator*(double factor) const { return {linear * factor, angular * factor}; }
+    /// The same about another point, from which the present one is seen at `arm`.
+    [[nodiscard]] Wrench seen_at(const Vec3d& arm) const { return {linear, angular + arm.cross(linear)}; }
 };
 
 } // namespace flotsam

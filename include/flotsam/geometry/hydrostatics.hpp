@@ -17,6 +17,10 @@ struct Submerged {
 /// world. A face that lies in the plane counts as above it.
 [[nodiscard]] Submerged submerged_part(const TriangleMesh& closed, const Pose& pose, double water_level);
 
+/// The same in the plane y = 0, per metre of width: `volume` is the area [m^2] of the solid's cut below the water
+/// level, `waterplane_area` the length of the cut's water line [m], the centre has y = 0.
+[[nodiscard]] Submerged submerged_section(const TriangleMesh& closed, const Pose& pose, double water_level);
+
 /// Height of the mesh's lowest vertex in the world [m].
 [[nodiscard]] double lowest_point(const TriangleMesh& mesh, const Pose& pose);
 

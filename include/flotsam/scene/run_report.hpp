@@ -43,18 +43,6 @@ struct ProbeReport {
     std::optional<double> last;
 };
 
-/// Momentum of the fluid, and where it came from and went over the run [N s].
-struct MomentumLedger {
-    Vec3d gravity_impulse = Vec3d::Zero(); ///< given to the fluid
-    Vec3d wall_impulse = Vec3d::Zero();    ///< given by the fluid to all walls
-    Vec3d body_impulse = Vec3d::Zero();    ///< given by the fluid to all bodies
-    Vec3d guard_impulse = Vec3d::Zero();   ///< the guard's part of the two
-    Vec3d fluid_momentum_start = Vec3d::Zero();
-    Vec3d fluid_momentum_end = Vec3d::Zero();
-    double momentum_error_relative = 0.0; ///< what does not add up / the largest of the terms
-    std::vector<Vec3d> wall_force_mean;   ///< per wall, over the last quarter [N]
-};
-
 struct MeanAndMax {
     double mean = 0.0, max = 0.0;
 };
@@ -78,7 +66,8 @@ struct RunReport {
     std::int64_t leaks_stopped = 0; ///< by the wall guard
     std::int64_t peak_memory_bytes = 0;
     std::uint64_t state_hash = 0;
-    MomentumLedger ledger;
+    Ledger ledger;                      ///< of the whole run
+    std::vector<Vec3d> wall_force_mean; ///< per wall, over the last quarter [N]
     std::vector<BodyReport> bodies;
     std::vector<JointReport> joints;
     std::vector<ProbeReport> probes;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flotsam/core/types.hpp"
+#include "flotsam/world/ledger.hpp"
 
 #include <array>
 
@@ -33,6 +33,7 @@ struct StepReport {
     Vec3d wall_impulse = Vec3d::Zero();     ///< given to all walls by the fluid (pressure, viscosity, guard) [N s]
     Vec3d body_impulse = Vec3d::Zero();     ///< given to all bodies by the fluid [N s]
     Vec3d guard_impulse = Vec3d::Zero();    ///< the guard's part of wall_impulse + body_impulse [N s]
+    Ledger ledger;                          ///< of this step: the same and more, by cause
     StageSeconds seconds;
 };
 

@@ -43,6 +43,7 @@ TEST_CASE("the predicted twist is Bullet's velocity after a step of a free body"
     const BodyState state = read_one(port);
     CHECK(state.responds);
     CHECK(difference(velocity(body), before) == 0.0); // reading changes nothing
+    CHECK(difference(state.start, before) == 0.0);
     scene.step(kStep);
     REQUIRE(difference(velocity(body), before) > 1e-3);
     CHECK(difference(velocity(body), state.predicted) < kTolerance);

@@ -158,3 +158,23 @@ TEST_CASE("a Wigley hull at its waterline", "[geometry][hydrostatics]")
     CHECK(part.center_of_buoyancy.z() == Approx(-3.0 / 8.0 * 0.25).epsilon(1e-3));
     CHECK(part.center_of_buoyancy.head<2>().norm() < 1e-12);
 }
+
+TEST_CASE("a section is cut exactly per metre, whatever the solid's width", "[geometry][hydrostatics]")
+{
+    const double width = GENERATE(0.1, 1.0, 7.0);
+    const TriangleMesh box = tessellate(BoxShape{{2, width, 1}}, 1.0);
+    const Pose pose{{7, 0, 10}, Quatd::Identity()};
+    const Submerged part = submerged_section(box, pose, 9.8);
+    CHECK(part.volume == Approx(2.0 * 0.3).epsilon(1e-13));
+    CHECK((part.center_of_buoyancy - Vec3d(7, 0, 9.65)).norm() < 1e-13);
+    CHECK(part.waterplane_area == Approx(2.0).epsilon(1e-13));
+    CHECK(submerged_section(box, pose, 9.5).volume == 0.0);
+    CHECK(submerged_section(box, pose, 20.0).volume == Approx(2.0).epsilon(1e-13));
+
+    // Turned, it is what the solid's part is, per metre.
+    const Pose heeled{{1, 0, -2}, Quatd(Eigen::AngleAxisd(0.6, Vec3d::UnitY()))};
+    const Submerged section = submerged_section(box, heeled, -1.8), solid = submerged_part(box, heeled, -1.8);
+    CHECK(section.volume == Approx(solid.volume / width).epsilon(1e-12));
+    CHECK((section.center_of_buoyancy - solid.center_of_buoyancy).norm() < 1e-12);
+    CHECK(section.waterplane_area == Approx(solid.waterplane_area / width).epsilon(1e-12));
+}

@@ -73,7 +73,16 @@ TEST_CASE("a run reports what the format promises", "[scene][run]")
     CHECK(json["bodies"][0]["mass"].get<double>() == Approx(15.0));
     CHECK(json["probes"][0]["name"] == "floor");
     CHECK(json["state_hash"].get<std::string>().size() == 16);
-    CHECK(json["ledger"]["momentum_error_relative"].get<double>() < 1e-4);
+    CHECK(json["ledger"]["momentum_error_relative"].get<double>() < 1e-5);
+    for (const char* books : {"angular_momentum", "energy", "volume"}) {
+        INFO(books);
+        CHECK(json["ledger"][books]["error_relative"].get<double>() < 1e-5);
+    }
+    const auto& energy = json["ledger"]["energy"];
+    CHECK(energy["kinetic_start"].get<double>() == 0.0);
+    CHECK(energy["kinetic_end"].get<double>() > 0.0);
+    CHECK(energy["bodies"]["pressure"].get<double>() != 0.0);
+    CHECK(json["ledger"]["momentum"]["walls"]["pressure"][2].get<double>() < 0.0);
 
     const auto rows = table(directory.read("out/history.csv"));
     REQUIRE(rows.size() == 5); // the header, t = 0, two frames and the end
