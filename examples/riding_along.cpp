@@ -14,8 +14,10 @@ int main()
     btVector3 inertia;
     shape.calculateLocalInertia(2, inertia);
     btRigidBody raft(2, nullptr, &shape, inertia), load(1, nullptr, &shape, inertia); // [kg]
-    raft.setCenterOfMassTransform({btQuaternion::getIdentity(), {btScalar(0.4), btScalar(0.3), btScalar(0.3)}});
-    load.setCenterOfMassTransform({btQuaternion::getIdentity(), {btScalar(0.4), btScalar(0.3), btScalar(0.42)}});
+    raft.setCenterOfMassTransform(
+        btTransform(btQuaternion::getIdentity(), {btScalar(0.4), btScalar(0.3), btScalar(0.3)}));
+    load.setCenterOfMassTransform(
+        btTransform(btQuaternion::getIdentity(), {btScalar(0.4), btScalar(0.3), btScalar(0.42)}));
     world.addRigidBody(&raft);
     world.addRigidBody(&load);
 

@@ -4,8 +4,12 @@
 #include "bullet/free_motion.hpp"
 #include "flotsam/core/contracts.hpp"
 
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace flotsam {
 
@@ -57,16 +61,36 @@ int BulletBodies::add(btRigidBody& body)
     return static_cast<int>(bodies_.size()) - 1;
 }
 
-void BulletBodies::remove(int number)
+int BulletBodies::add(btMultiBodyLinkCollider& link)
 {
-    static_cast<void>(body(number));
-    bodies_[static_cast<std::size_t>(number)] = {};
+    Coupled coupled;
+    coupled.link = &link;
+    bodies_.push_back(coupled);
+    if (articulation_of(*link.m_multiBody) == nullptr) {
+        articulations_.push_back({MultibodyMotion(*link.m_multiBody), 0, false, {}});
+        articulations_.back().impulses.resize(static_cast<std::size_t>(articulations_.back().motion.size()));
+    }
+    return static_cast<int>(bodies_.size()) - 1;
 }
 
-int BulletBodies::number_of(const btRigidBody& body) const
+void BulletBodies::remove(int number)
 {
-    const auto found =
-        std::find_if(bodies_.begin(), bodies_.end(), [&](const Coupled& coupled) { return coupled.body == &body; });
+    require(number >= 0 && number < static_cast<int>(bodies_.size()), "no body has this number", number);
+    const btMultiBodyLinkCollider* link = bodies_[static_cast<std::size_t>(number)].link;
+    bodies_[static_cast<std::size_t>(number)] = {};
+    if (link == nullptr) return;
+    const auto is_of_the_same = [&](const Coupled& other) {
+        return other.link != nullptr && other.link->m_multiBody == link->m_multiBody;
+    };
+    if (std::any_of(bodies_.begin(), bodies_.end(), is_of_the_same)) return;
+    std::erase_if(articulations_, [&](const Articulation& a) { return &a.motion.body() == link->m_multiBody; });
+}
+
+int BulletBodies::number_of(const btCollisionObject& object) const
+{
+    const auto found = std::find_if(bodies_.begin(), bodies_.end(), [&](const Coupled& coupled) {
+        return coupled.body == &object || coupled.link == &object;
+    });
     return found == bodies_.end() ? -1 : static_cast<int>(found - bodies_.begin());
 }
 
@@ -74,8 +98,15 @@ btRigidBody& BulletBodies::body(int number) const
 {
     require(number >= 0 && number < static_cast<int>(bodies_.size()) &&
                 bodies_[static_cast<std::size_t>(number)].body != nullptr,
-            "a body's number must be one that add returned and that was not removed", number);
+            "a body's number must be one that add returned for a rigid body and that was not removed", number);
     return *bodies_[static_cast<std::size_t>(number)].body;
+}
+
+BulletBodies::Articulation* BulletBodies::articulation_of(const btMultiBody& body)
+{
+    const auto found = std::find_if(articulations_.begin(), articulations_.end(),
+                                    [&](const Articulation& a) { return &a.motion.body() == &body; });
+    return found == articulations_.end() ? nullptr : &*found;
 }
 
 void BulletBodies::begin(double seconds, bool in_tick)
@@ -87,19 +118,94 @@ void BulletBodies::begin(double seconds, bool in_tick)
     is_single_ = false;
     motion_.clear();
     numbers_.reset(world_);
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        Coupled& coupled = bodies_[k];
+    start_.clear();
+    end_.clear();
+    for (Articulation& articulation : articulations_) begin_articulation(articulation);
+    for (Coupled& coupled : bodies_) {
         begin_body(coupled, seconds, in_tick);
-        motion_.add_body(coupled.end, dense(coupled.mobility));
-        if (coupled.body != nullptr) numbers_.set(*coupled.body, static_cast<int>(k), coupled.is_dynamic);
+        if (coupled.link != nullptr) continue;
+        coupled.entity = add_entity(coupled.start, coupled.end, dense(coupled.mobility));
+        if (coupled.body != nullptr) numbers_.set(*coupled.body, coupled.entity, coupled.is_dynamic);
     }
-    uncoupled_start_.clear();
-    uncoupled_end_.clear();
-    collector_.collect(world_, seconds, numbers_, motion_,
-                       [&](btRigidBody& body) { return add_uncoupled(body, in_tick); });
+    collector_.collect(world_, seconds, numbers_, motion_, [&](btRigidBody& body) { return add_uncoupled(body); });
+    add_multibody_rows();
     impulses_.resize(motion_.bodies());
     answers_.resize(motion_.bodies());
     twists_.resize(motion_.bodies());
+}
+
+int BulletBodies::add_entity(const Twist& start, const Twist& end, const Mat6d& mobility)
+{
+    start_.push_back(start);
+    end_.push_back(end);
+    return motion_.add_body(end, mobility);
+}
+
+void BulletBodies::begin_articulation(Articulation& articulation)
+{
+    MultibodyMotion& motion = articulation.motion;
+    motion.read(seconds_, from_bullet(world_.getGravity()), is_in_tick_);
+    const int links = motion.size();
+    articulation.entity = static_cast<int>(start_.size());
+    Eigen::MatrixXd mobility(6 * links, 6 * links);
+    for (int to = 0; to < links; ++to)
+        for (int from = 0; from < links; ++from)
+            mobility.block<6, 6>(6 * to, 6 * from) = motion.mobility().block(to, from);
+    for (int link = 0; link < links; ++link) {
+        start_.push_back(motion.is_asleep() ? Twist{} : motion.twist(link));
+        end_.push_back(motion.predicted(link));
+        const btMultiBody& body = motion.body();
+        const btMultiBodyLinkCollider* collider =
+            link == 0 ? body.getBaseCollider() : body.getLink(link - 1).m_collider;
+        if (collider != nullptr) numbers_.set(*collider, articulation.entity + link, motion.mobility().responds(link));
+    }
+    motion_.add_bodies(std::span(end_).subspan(static_cast<std::size_t>(articulation.entity)), mobility);
+}
+
+void BulletBodies::begin_link(Coupled& coupled)
+{
+    const Articulation& articulation = *articulation_of(*coupled.link->m_multiBody);
+    const int link = coupled.link->m_link + 1;
+    coupled.entity = articulation.entity + link;
+    coupled.pose = articulation.motion.pose(link);
+    coupled.is_dynamic = articulation.motion.mobility().responds(link);
+    coupled.start = coupled.twist = start_[static_cast<std::size_t>(coupled.entity)];
+    coupled.end = end_[static_cast<std::size_t>(coupled.entity)];
+}
+
+/// Motors, limits and other constraints of multibodies.
+void BulletBodies::add_multibody_rows()
+{
+    auto* world = articulations_.empty() ? nullptr : dynamic_cast<btMultiBodyDynamicsWorld*>(&world_);
+    if (world == nullptr) return;
+    rows_scratch_.clear();
+    for (int k = 0; k < world->getNumMultiBodyConstraints(); ++k) {
+        btMultiBodyConstraint& constraint = *world->getMultiBodyConstraint(k);
+        const auto is_read = [&](btMultiBody* body) { return body == nullptr || articulation_of(*body) != nullptr; };
+        if (!is_read(constraint.getMultiBodyA()) || !is_read(constraint.getMultiBodyB())) continue;
+        multibody_rows_.append(constraint, seconds_, world_.getSolverInfo(), rows_scratch_);
+    }
+    for (const MultibodyRow& from : rows_scratch_) {
+        ConstraintRow row;
+        row.a = entity_of(from.a);
+        row.b = entity_of(from.b);
+        row.J_a = from.jacobian_a;
+        row.J_b = from.jacobian_b;
+        row.target = from.target;
+        row.cfm = from.cfm;
+        row.lower = from.lower;
+        row.upper = from.upper;
+        motion_.add_row(row);
+    }
+}
+
+int BulletBodies::entity_of(const RowEnd& end)
+{
+    if (end.multibody != nullptr) return articulation_of(*end.multibody)->entity + end.link;
+    if (end.body == nullptr || end.body->isStaticObject()) return -1;
+    if (numbers_.of(*end.body) == MotionNumbers::kNone)
+        numbers_.set(*end.body, add_uncoupled(*end.body), !end.body->isKinematicObject());
+    return numbers_.of(*end.body);
 }
 
 void BulletBodies::begin_body(Coupled& coupled, double seconds, bool in_tick)
@@ -108,6 +214,7 @@ void BulletBodies::begin_body(Coupled& coupled, double seconds, bool in_tick)
     coupled.given = {};
     coupled.start = coupled.end = coupled.unaided = {};
     coupled.is_dynamic = coupled.is_asleep = false;
+    if (coupled.link != nullptr) begin_link(coupled);
     if (coupled.body == nullptr) return;
     btRigidBody& body = *coupled.body;
     const bool is_kinematic = body.isKinematicObject();
@@ -143,17 +250,15 @@ void BulletBodies::begin_dynamic(Coupled& coupled, double seconds, bool in_tick)
     coupled.end = {motion.end.linear, motion.end.angular - leak};
 }
 
-int BulletBodies::add_uncoupled(btRigidBody& body, bool in_tick)
+int BulletBodies::add_uncoupled(btRigidBody& body)
 {
     Coupled other;
     other.body = &body;
     if (body.isKinematicObject())
         other.start = other.end = twist_from_bullet(body.getLinearVelocity(), body.getAngularVelocity());
     else if (body.getActivationState() != DISABLE_SIMULATION)
-        begin_dynamic(other, seconds_, in_tick);
-    uncoupled_start_.push_back(other.start);
-    uncoupled_end_.push_back(other.end);
-    return motion_.add_body(other.end, dense(other.mobility));
+        begin_dynamic(other, seconds_, is_in_tick_);
+    return add_entity(other.start, other.end, dense(other.mobility));
 }
 
 void BulletBodies::read(double dt, std::span<BodyState> states)
@@ -166,42 +271,47 @@ void BulletBodies::read(double dt, std::span<BodyState> states)
     }
     dt_ = dt;
     const double part = dt / seconds_;
-    const bool is_whole = part == 1.0 && elapsed_ == 0.0;
-    if (!is_whole) {
-        for (std::size_t k = 0; k < bodies_.size(); ++k)
-            motion_.set_free(k, sum(bodies_[k].twist, between(bodies_[k].start, bodies_[k].end, part)));
-        for (std::size_t k = bodies_.size(); k < motion_.bodies(); ++k) {
-            const std::size_t other = k - bodies_.size();
-            motion_.set_free(k, sum(elapsed_ > 0.0 ? twists_[k] : uncoupled_start_[other],
-                                    between(uncoupled_start_[other], uncoupled_end_[other], part)));
-        }
+    if (part != 1.0 || elapsed_ > 0.0) {
+        for (std::size_t k = 0; k < motion_.bodies(); ++k)
+            motion_.set_free(k, sum(elapsed_ > 0.0 ? twists_[k] : start_[k], between(start_[k], end_[k], part)));
         motion_.scale_bounds(part);
     }
     guess_impulses(dt);
     motion_.solve(impulses_, 0.1 * revision_tolerance());
-    for (std::size_t k = 0; k < bodies_.size(); ++k)
-        states[k] = {bodies_[k].pose, motion_.predicted()[k], bodies_[k].is_dynamic, bodies_[k].twist};
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        const Coupled& coupled = bodies_[k];
+        states[k] = {coupled.pose, motion_.predicted()[static_cast<std::size_t>(coupled.entity)], coupled.is_dynamic,
+                     coupled.twist};
+    }
 }
 
 /// Which joints and contacts will hold is guessed with the forces of the last Bullet step.
 void BulletBodies::guess_impulses(double dt)
 {
     std::fill(impulses_.begin(), impulses_.end(), Wrench{});
-    for (std::size_t k = 0; k < bodies_.size(); ++k) impulses_[k] = bodies_[k].last_given * dt;
+    for (const Coupled& coupled : bodies_)
+        impulses_[static_cast<std::size_t>(coupled.entity)] = coupled.last_given * dt;
+}
+
+void BulletBodies::spread(std::span<const Wrench> impulses) const
+{
+    std::fill(impulses_.begin(), impulses_.end(), Wrench{});
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+        impulses_[static_cast<std::size_t>(bodies_[k].entity)] = impulses[k];
 }
 
 void BulletBodies::respond(std::span<const Wrench> impulses, std::span<Twist> twists) const
 {
     FLOTSAM_ASSERT(impulses.size() == bodies_.size() && twists.size() == bodies_.size(), "one entry per body");
-    std::copy(impulses.begin(), impulses.end(), impulses_.begin());
-    std::fill(impulses_.begin() + static_cast<std::ptrdiff_t>(bodies_.size()), impulses_.end(), Wrench{});
+    spread(impulses);
     motion_.respond(impulses_, answers_);
-    std::copy_n(answers_.begin(), bodies_.size(), twists.begin());
+    for (std::size_t k = 0; k < bodies_.size(); ++k) twists[k] = answers_[static_cast<std::size_t>(bodies_[k].entity)];
 }
 
 bool BulletBodies::own_mobility(std::span<Mat6d> blocks) const
 {
-    for (std::size_t k = 0; k < bodies_.size(); ++k) blocks[k] = motion_.own_mobility(k);
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+        blocks[k] = motion_.own_mobility(static_cast<std::size_t>(bodies_[k].entity));
     return true;
 }
 
@@ -213,11 +323,11 @@ double BulletBodies::revision_tolerance() const
 
 bool BulletBodies::revise(std::span<const Wrench> impulses, std::span<BodyState> states)
 {
-    std::copy(impulses.begin(), impulses.end(), impulses_.begin());
-    std::fill(impulses_.begin() + static_cast<std::ptrdiff_t>(bodies_.size()), impulses_.end(), Wrench{});
+    spread(impulses);
     if (motion_.holds(impulses_, revision_tolerance())) return false;
     motion_.solve(impulses_, 0.1 * revision_tolerance());
-    for (std::size_t k = 0; k < bodies_.size(); ++k) states[k].predicted = motion_.predicted()[k];
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+        states[k].predicted = motion_.predicted()[static_cast<std::size_t>(bodies_[k].entity)];
     return true;
 }
 
@@ -225,15 +335,14 @@ void BulletBodies::apply(std::span<const Wrench> impulses)
 {
     require(is_open() || bodies_.empty(), "apply needs a read before it");
     require(impulses.size() == bodies_.size(), "apply needs one impulse per body", impulses.size());
-    std::copy(impulses.begin(), impulses.end(), impulses_.begin());
-    std::fill(impulses_.begin() + static_cast<std::ptrdiff_t>(bodies_.size()), impulses_.end(), Wrench{});
+    spread(impulses);
     if (!motion_.holds(impulses_, revision_tolerance())) motion_.solve(impulses_, 0.1 * revision_tolerance());
     motion_.respond(impulses_, answers_);
     for (std::size_t k = 0; k < motion_.bodies(); ++k) twists_[k] = sum(motion_.predicted()[k], answers_[k]);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         Coupled& coupled = bodies_[k];
         coupled.given += impulses[k];
-        coupled.twist = twists_[k];
+        coupled.twist = twists_[static_cast<std::size_t>(coupled.entity)];
         coupled.pose = moved(coupled.pose, coupled.twist, dt_);
     }
     elapsed_ += dt_;
@@ -245,22 +354,42 @@ void BulletBodies::finish()
     for (Coupled& coupled : bodies_) {
         coupled.last_given = coupled.given * (1.0 / seconds_);
         coupled.force = coupled.torque = Vec3d::Zero();
-        const Wrench& given = coupled.given;
         if (coupled.was_kinematic) coupled.kinematic.reached(coupled.pose);
-        if (!coupled.is_dynamic || is_zero(given.linear, given.angular)) continue;
-        btRigidBody& body = *coupled.body;
-        body.activate(true);
-        const Twist aided = sum(coupled.end, coupled.mobility * given);
-        coupled.force = static_cast<double>(body.getMass()) / seconds_ * (aided.linear - coupled.unaided.linear);
-        if (!turn(coupled, aided.angular)) {
-            const Mat3d axes = from_bullet(body.getWorldTransform().getBasis());
-            const Vec3d inertia = from_bullet(body.getLocalInertia()); // 0 where the body never turns
-            coupled.torque =
-                axes * inertia.asDiagonal() * axes.transpose() * (aided.angular - coupled.unaided.angular) / seconds_;
-        }
-        add_forces(body, coupled.force, coupled.torque);
+        const bool is_touched = !is_zero(coupled.given.linear, coupled.given.angular);
+        if (coupled.body != nullptr && coupled.is_dynamic && is_touched) push_body(coupled);
     }
+    push_articulations();
     seconds_ = 0.0;
+}
+
+void BulletBodies::push_body(Coupled& coupled)
+{
+    btRigidBody& body = *coupled.body;
+    body.activate(true);
+    const Twist aided = sum(coupled.end, coupled.mobility * coupled.given);
+    coupled.force = static_cast<double>(body.getMass()) / seconds_ * (aided.linear - coupled.unaided.linear);
+    if (!turn(coupled, aided.angular)) {
+        const Mat3d axes = from_bullet(body.getWorldTransform().getBasis());
+        const Vec3d inertia = from_bullet(body.getLocalInertia()); // 0 where the body never turns
+        coupled.torque =
+            axes * inertia.asDiagonal() * axes.transpose() * (aided.angular - coupled.unaided.angular) / seconds_;
+    }
+    add_forces(body, coupled.force, coupled.torque);
+}
+
+void BulletBodies::push_articulations()
+{
+    for (Articulation& articulation : articulations_) {
+        std::fill(articulation.impulses.begin(), articulation.impulses.end(), Wrench{});
+        articulation.is_pushed = false;
+        for (const Coupled& coupled : bodies_) {
+            if (coupled.link == nullptr || coupled.link->m_multiBody != &articulation.motion.body()) continue;
+            articulation.impulses[static_cast<std::size_t>(coupled.link->m_link + 1)] = coupled.given;
+            const bool is_touched = !is_zero(coupled.given.linear, coupled.given.angular);
+            articulation.is_pushed = articulation.is_pushed || is_touched;
+        }
+        if (articulation.is_pushed) articulation.motion.apply(articulation.impulses);
+    }
 }
 
 /// Gives the body the angular velocity from which Bullet's step takes it to `end`. A torque would do the same, but
@@ -292,6 +421,8 @@ void BulletBodies::take_back_forces()
         add_forces(*coupled.body, -coupled.force, -coupled.torque);
         coupled.force = coupled.torque = Vec3d::Zero();
     }
+    for (Articulation& articulation : articulations_)
+        if (std::exchange(articulation.is_pushed, false)) articulation.motion.withdraw();
 }
 
 double BulletBodies::disagreement() const
@@ -315,6 +446,8 @@ void BulletBodies::after_bullet_step()
 {
     for (Coupled& coupled : bodies_)
         if (coupled.body != nullptr && coupled.was_kinematic) coupled.kinematic.finish(*coupled.body);
+    for (Articulation& articulation : articulations_)
+        if (std::exchange(articulation.is_pushed, false)) articulation.motion.forget();
 }
 
 } // namespace flotsam

@@ -4,6 +4,8 @@
 #include "bullet/constraint_rows.hpp"
 #include "bullet/kinematic_motion.hpp"
 #include "bullet/mobility.hpp"
+#include "bullet/multibody_motion.hpp"
+#include "bullet/multibody_rows.hpp"
 #include "flotsam/world/bodies.hpp"
 
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
@@ -13,7 +15,7 @@
 
 namespace flotsam {
 
-/// The bodies port over btRigidBodies of a Bullet world.
+/// The bodies port over btRigidBodies and links of btMultiBodies of a Bullet world.
 ///
 /// A Bullet step is one or several steps of the fluid. At its start, begin() predicts what Bullet makes of each body
 /// that nothing touches, except that locked rotation axes hold (Bullet lets torques and gyroscopic terms turn a body
@@ -33,9 +35,10 @@ class BulletBodies final : public Bodies {
 
     /// Returns the body's number.
     int add(btRigidBody& body);
+    int add(btMultiBodyLinkCollider& link);
     /// Its number stays, without a body.
     void remove(int number);
-    [[nodiscard]] int number_of(const btRigidBody& body) const; ///< -1: not coupled
+    [[nodiscard]] int number_of(const btCollisionObject& object) const; ///< -1: not coupled
     [[nodiscard]] btRigidBody& body(int number) const;
 
     /// When Bullet's next step is `seconds` long. `in_tick`: its stepSimulation has begun, so that gravity is among the
@@ -60,7 +63,9 @@ class BulletBodies final : public Bodies {
 
   private:
     struct Coupled {
-        btRigidBody* body = nullptr; ///< null: removed
+        btRigidBody* body = nullptr;             ///< null: a link, or removed
+        btMultiBodyLinkCollider* link = nullptr; ///< null: a rigid body, or removed
+        int entity = 0;                          ///< its number in motion_
         KinematicMotion kinematic;
         bool was_kinematic = false;
         bool is_dynamic = false, is_asleep = false;
@@ -74,25 +79,43 @@ class BulletBodies final : public Bodies {
         Pose pose;                                           ///< now, as the fluid has it
         Twist twist;
     };
+    /// A multibody with coupled links. All of its links are in motion_, base first.
+    struct Articulation {
+        MultibodyMotion motion;
+        int entity = 0; ///< of the base in motion_
+        bool is_pushed = false;
+        std::vector<Wrench> impulses; ///< per link
+    };
     void begin_body(Coupled& coupled, double seconds, bool in_tick);
     void begin_dynamic(Coupled& coupled, double seconds, bool in_tick);
     [[nodiscard]] bool turn(const Coupled& coupled, const Vec3d& end) const;
-    void collect_rows(bool in_tick);
-    int add_uncoupled(btRigidBody& body, bool in_tick);
+    void begin_articulation(Articulation& articulation);
+    void begin_link(Coupled& coupled);
+    int add_entity(const Twist& start, const Twist& end, const Mat6d& mobility);
+    int add_uncoupled(btRigidBody& body);
+    void add_multibody_rows();
+    [[nodiscard]] int entity_of(const RowEnd& end);
+    [[nodiscard]] Articulation* articulation_of(const btMultiBody& body);
+    void spread(std::span<const Wrench> impulses) const; ///< to impulses_
+    void push_body(Coupled& coupled);
+    void push_articulations();
     void guess_impulses(double dt);
     [[nodiscard]] double revision_tolerance() const;
     [[nodiscard]] bool is_open() const { return seconds_ > 0.0; }
 
     btDynamicsWorld& world_;
     std::vector<Coupled> bodies_;
-    ConstrainedMotion motion_; ///< coupled bodies by their numbers, then others that hang on them
+    std::vector<Articulation> articulations_;
+    ConstrainedMotion motion_; ///< coupled bodies, all links of their multibodies, and bodies that hang on them
     MotionNumbers numbers_;
     ConstraintCollector collector_;
-    std::vector<Twist> uncoupled_start_, uncoupled_end_; ///< as Coupled has them
-    mutable std::vector<Wrench> impulses_;               ///< of all bodies in motion_
-    mutable std::vector<Twist> answers_;                 ///< of the same
-    std::vector<Twist> twists_;                          ///< of the same, at the end of the last fluid step
-    double seconds_ = 0.0;                               ///< of the Bullet step under way; 0: none
+    MultibodyRows multibody_rows_;
+    std::vector<MultibodyRow> rows_scratch_;
+    std::vector<Twist> start_, end_;       ///< of all in motion_, as Coupled has them
+    mutable std::vector<Wrench> impulses_; ///< of the same
+    mutable std::vector<Twist> answers_;   ///< of the same
+    std::vector<Twist> twists_;            ///< of the same, at the end of the last fluid step
+    double seconds_ = 0.0;                 ///< of the Bullet step under way; 0: none
     double elapsed_ = 0.0, dt_ = 0.0;
     bool is_in_tick_ = false;
     bool is_single_ = false; ///< the Bullet step is one fluid step, begun by read

@@ -4,6 +4,8 @@
 #include "bullet/step_plan.hpp"
 #include "flotsam/core/contracts.hpp"
 
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -53,6 +55,11 @@ struct BulletCoupling::Impl {
         fluid.prepare(bodies);
         return fluid.allowed_time_step();
     }
+    void require_all_ours() const
+    {
+        require(fluid.body_count() == static_cast<int>(bodies.size()),
+                "all bodies of a coupled FluidWorld must be added through its BulletCoupling");
+    }
     void require_no_step() const
     {
         if (is_stepping) throw std::logic_error("bodies must not be added, removed or reshaped while a step runs");
@@ -97,15 +104,45 @@ int BulletCoupling::add(btRigidBody& body, const TriangleMesh& surface)
     require(impl_->world.getCollisionObjectArray().findLinearSearch(&body) < impl_->world.getNumCollisionObjects(),
             "a body must be in the Bullet world before it is coupled");
     require(number_of(body) < 0, "a body must be coupled once only");
-    require(impl_->fluid.body_count() == static_cast<int>(impl_->bodies.size()),
-            "all bodies of a coupled FluidWorld must be added through its BulletCoupling");
+    impl_->require_all_ours();
     const int number = impl_->fluid.add_body(surface);
     if (impl_->fluid.settings().dimensions == 2) lock_to_plane(body);
     impl_->bodies.add(body);
     return number;
 }
 
-void BulletCoupling::remove(btRigidBody& body)
+int BulletCoupling::add(btMultiBodyLinkCollider& link)
+{
+    require(link.getCollisionShape() != nullptr, "a coupled link must have a collision shape");
+    return add(link, mesh_of(*link.getCollisionShape(), impl_->fluid.settings().particle_spacing));
+}
+
+int BulletCoupling::add(btMultiBodyLinkCollider& link, const TriangleMesh& surface)
+{
+    impl_->require_no_step();
+    require(dynamic_cast<btMultiBodyDynamicsWorld*>(&impl_->world) != nullptr,
+            "links of multibodies need a btMultiBodyDynamicsWorld");
+    require(link.m_multiBody != nullptr &&
+                impl_->world.getCollisionObjectArray().findLinearSearch(&link) < impl_->world.getNumCollisionObjects(),
+            "a link's collider must be in the Bullet world before it is coupled");
+    require(number_of(link) < 0, "a link must be coupled once only");
+    impl_->require_all_ours();
+    const int number = impl_->fluid.add_body(surface);
+    impl_->bodies.add(link);
+    return number;
+}
+
+std::vector<int> BulletCoupling::add(btMultiBody& body)
+{
+    std::vector<int> numbers;
+    for (int link = -1; link < body.getNumLinks(); ++link) {
+        btMultiBodyLinkCollider* collider = link < 0 ? body.getBaseCollider() : body.getLink(link).m_collider;
+        if (collider != nullptr) numbers.push_back(add(*collider));
+    }
+    return numbers;
+}
+
+void BulletCoupling::remove(btCollisionObject& body)
 {
     impl_->require_no_step();
     const int number = number_of(body);
@@ -114,13 +151,13 @@ void BulletCoupling::remove(btRigidBody& body)
     impl_->bodies.remove(number);
 }
 
-void BulletCoupling::reshape(btRigidBody& body)
+void BulletCoupling::reshape(btCollisionObject& body)
 {
     require(body.getCollisionShape() != nullptr, "a coupled body must have a collision shape");
     reshape(body, mesh_of(*body.getCollisionShape(), impl_->fluid.settings().particle_spacing));
 }
 
-void BulletCoupling::reshape(btRigidBody& body, const TriangleMesh& surface)
+void BulletCoupling::reshape(btCollisionObject& body, const TriangleMesh& surface)
 {
     impl_->require_no_step();
     const int number = number_of(body);
@@ -200,7 +237,7 @@ btRigidBody& BulletCoupling::body(int number) const
     return impl_->bodies.body(number);
 }
 
-int BulletCoupling::number_of(const btRigidBody& body) const
+int BulletCoupling::number_of(const btCollisionObject& body) const
 {
     return impl_->bodies.number_of(body);
 }

@@ -2,10 +2,13 @@
 
 #include "flotsam/world/fluid_world.hpp"
 
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace flotsam {
 
@@ -58,11 +61,18 @@ class BulletCoupling {
     /// The same with a surface of its own, closed, in the frame of the body's world transform (whose origin is the
     /// centre of mass).
     int add(btRigidBody& body, const TriangleMesh& surface);
+    /// Couples a link (or the base) of a multibody of the world, which must be a btMultiBodyDynamicsWorld. A push on
+    /// one link moves the others inside the pressure solve; motors and limits (btMultiBodyConstraint) stand inside it
+    /// too.
+    int add(btMultiBodyLinkCollider& link);
+    int add(btMultiBodyLinkCollider& link, const TriangleMesh& surface);
+    /// All links that have a collider, base first; returns their numbers.
+    std::vector<int> add(btMultiBody& body);
     /// To be called before the body is removed from the Bullet world. Its number is not used again.
-    void remove(btRigidBody& body);
+    void remove(btCollisionObject& body);
     /// Gives a coupled body another surface; its collision shape's, or its own.
-    void reshape(btRigidBody& body);
-    void reshape(btRigidBody& body, const TriangleMesh& surface);
+    void reshape(btCollisionObject& body);
+    void reshape(btCollisionObject& body, const TriangleMesh& surface);
 
     /// One step of both worlds: at most `dt` seconds, > 0, cut to what the fluid allows; returns what was done
     /// (report.dt). The Bullet world makes one step of the same length, stepSimulation(report.dt, 0).
@@ -84,7 +94,7 @@ class BulletCoupling {
     [[nodiscard]] Bodies& bodies();
     [[nodiscard]] btRigidBody& body(int number) const;
     /// Number of a body, -1 for one that is not coupled.
-    [[nodiscard]] int number_of(const btRigidBody& body) const;
+    [[nodiscard]] int number_of(const btCollisionObject& body) const;
 
   private:
     struct Impl;

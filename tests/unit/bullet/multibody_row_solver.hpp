@@ -35,7 +35,7 @@ class RowSolver {
             add(motion, impulses, twists_.back());
             motion.apply(impulses);
         }
-        for (btRigidBody* body : rigid_bodies) rigid_twists_.push_back(free_motion(*body, kStep, 100).end);
+        for (btRigidBody* body : rigid_bodies) rigid_twists_.push_back(free_motion(*body, kStep, 100, false).end);
         for (int k = 0; k < scene_.world.getNumMultiBodyConstraints(); ++k) {
             btMultiBodyConstraint& constraint = *scene_.world.getMultiBodyConstraint(k);
             REQUIRE(rows_of_.append(constraint, kStep, scene_.world.getSolverInfo(), rows));
