@@ -16,17 +16,32 @@ bool is_zero(const Vec3d& linear, const Vec3d& angular)
     return linear.isZero(0.0) && angular.isZero(0.0);
 }
 
-/// Makes Bullet's next step of `dt` change the body's velocity by `change` more. Factors are put aside for the moment:
-/// they are in `change` already, and holding a locked axis takes a torque about it.
-void push(btRigidBody& body, const Twist& change, double dt)
+Twist sum(const Twist& a, const Twist& b)
+{
+    return {a.linear + b.linear, a.angular + b.angular};
+}
+
+Twist between(const Twist& from, const Twist& to, double part)
+{
+    return {part * (to.linear - from.linear), part * (to.angular - from.angular)};
+}
+
+Mat6d dense(const Mobility& mobility)
+{
+    Mat6d matrix = Mat6d::Zero();
+    matrix.topLeftCorner<3, 3>() = mobility.linear.asDiagonal();
+    matrix.bottomRightCorner<3, 3>() = mobility.angular;
+    return matrix;
+}
+
+/// Adds forces with the body's factors put aside for the moment: they are in the forces already, and holding a locked
+/// axis takes a torque about it.
+void add_forces(btRigidBody& body, const Vec3d& force, const Vec3d& torque)
 {
     const btVector3 linear_factor = body.getLinearFactor(), angular_factor = body.getAngularFactor();
-    const Mat3d axes = from_bullet(body.getWorldTransform().getBasis());
-    const Vec3d inertia = from_bullet(body.getLocalInertia()); // 0 where the body never turns
-    const Vec3d torque = axes * inertia.asDiagonal() * axes.transpose() * change.angular / dt;
     body.setLinearFactor(btVector3(1, 1, 1));
     body.setAngularFactor(btVector3(1, 1, 1));
-    body.applyCentralForce(to_bullet(change.linear * (static_cast<double>(body.getMass()) / dt)));
+    body.applyCentralForce(to_bullet(force));
     body.applyTorque(to_bullet(torque));
     body.setLinearFactor(linear_factor);
     body.setAngularFactor(angular_factor);
@@ -42,101 +57,233 @@ int BulletBodies::add(btRigidBody& body)
     return static_cast<int>(bodies_.size()) - 1;
 }
 
-bool BulletBodies::contains(const btRigidBody& body) const
+void BulletBodies::remove(int number)
 {
-    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Coupled& coupled) { return coupled.body == &body; });
+    static_cast<void>(body(number));
+    bodies_[static_cast<std::size_t>(number)] = {};
+}
+
+int BulletBodies::number_of(const btRigidBody& body) const
+{
+    const auto found =
+        std::find_if(bodies_.begin(), bodies_.end(), [&](const Coupled& coupled) { return coupled.body == &body; });
+    return found == bodies_.end() ? -1 : static_cast<int>(found - bodies_.begin());
 }
 
 btRigidBody& BulletBodies::body(int number) const
 {
-    require(number >= 0 && number < static_cast<int>(bodies_.size()), "a body's number must be one that add returned",
-            number);
+    require(number >= 0 && number < static_cast<int>(bodies_.size()) &&
+                bodies_[static_cast<std::size_t>(number)].body != nullptr,
+            "a body's number must be one that add returned and that was not removed", number);
     return *bodies_[static_cast<std::size_t>(number)].body;
+}
+
+void BulletBodies::begin(double seconds, bool in_tick)
+{
+    require(seconds > 0.0 && std::isfinite(seconds), "a step must be > 0 s and finite", seconds);
+    seconds_ = seconds;
+    elapsed_ = 0.0;
+    is_single_ = false;
+    motion_.clear();
+    numbers_.reset(world_);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        Coupled& coupled = bodies_[k];
+        begin_body(coupled, seconds, in_tick);
+        motion_.add_body(coupled.end, dense(coupled.mobility));
+        if (coupled.body != nullptr) numbers_.set(*coupled.body, static_cast<int>(k), coupled.is_dynamic);
+    }
+    uncoupled_start_.clear();
+    uncoupled_end_.clear();
+    collector_.collect(world_, seconds, numbers_, motion_,
+                       [&](btRigidBody& body) { return add_uncoupled(body, in_tick); });
+    impulses_.resize(motion_.bodies());
+    answers_.resize(motion_.bodies());
+    twists_.resize(motion_.bodies());
+}
+
+void BulletBodies::begin_body(Coupled& coupled, double seconds, bool in_tick)
+{
+    coupled.mobility = {};
+    coupled.given = {};
+    coupled.start = coupled.end = coupled.unaided = {};
+    coupled.is_dynamic = coupled.is_asleep = false;
+    if (coupled.body == nullptr) return;
+    btRigidBody& body = *coupled.body;
+    const bool is_kinematic = body.isKinematicObject();
+    if (is_kinematic && !coupled.was_kinematic) {
+        coupled.kinematic = {};
+        if (!in_tick) coupled.kinematic.start(body);
+    }
+    coupled.was_kinematic = is_kinematic;
+    if (is_kinematic) {
+        coupled.start = in_tick ? coupled.kinematic.plan_in_tick(body, seconds) : coupled.kinematic.plan(body, seconds);
+        coupled.pose = in_tick ? coupled.kinematic.pose_in_tick() : KinematicMotion::start_pose(body);
+        coupled.end = coupled.unaided = coupled.start;
+    } else {
+        coupled.pose = from_bullet(body.getWorldTransform());
+        if (!body.isStaticObject() && body.getActivationState() != DISABLE_SIMULATION)
+            begin_dynamic(coupled, seconds, in_tick);
+    }
+    coupled.twist = coupled.start;
+}
+
+void BulletBodies::begin_dynamic(Coupled& coupled, double seconds, bool in_tick)
+{
+    btRigidBody& body = *coupled.body;
+    coupled.is_dynamic = true;
+    coupled.is_asleep = !body.isActive();
+    const FreeMotion motion = free_motion(body, seconds, world_.getSolverInfo().m_maxGyroscopicForce, in_tick);
+    coupled.mobility = mobility_of(body);
+    coupled.unaided = motion.end;
+    if (coupled.is_asleep) return;
+    const Vec3d turned = motion.end.angular - motion.damped.angular;
+    const Vec3d leak = turned - coupled.mobility.held * turned; // about locked axes; exactly 0 without any
+    coupled.start = twist_from_bullet(body.getLinearVelocity(), body.getAngularVelocity());
+    coupled.end = {motion.end.linear, motion.end.angular - leak};
+}
+
+int BulletBodies::add_uncoupled(btRigidBody& body, bool in_tick)
+{
+    Coupled other;
+    other.body = &body;
+    if (body.isKinematicObject())
+        other.start = other.end = twist_from_bullet(body.getLinearVelocity(), body.getAngularVelocity());
+    else if (body.getActivationState() != DISABLE_SIMULATION)
+        begin_dynamic(other, seconds_, in_tick);
+    uncoupled_start_.push_back(other.start);
+    uncoupled_end_.push_back(other.end);
+    return motion_.add_body(other.end, dense(other.mobility));
 }
 
 void BulletBodies::read(double dt, std::span<BodyState> states)
 {
     require(dt > 0.0 && std::isfinite(dt), "a step must be > 0 s and finite", dt);
     require(states.size() == bodies_.size(), "read needs one state per body", states.size());
+    if (!is_open() || is_single_) {
+        begin(dt, false);
+        is_single_ = true;
+    }
     dt_ = dt;
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        Coupled& coupled = bodies_[k];
-        const btRigidBody& body = *coupled.body;
-        if (body.isKinematicObject() && !coupled.was_kinematic) coupled.kinematic.start(*coupled.body);
-        coupled.was_kinematic = body.isKinematicObject();
-        if (body.isKinematicObject())
-            states[k] = read_kinematic(coupled, dt);
-        else if (body.isStaticObject() || body.getActivationState() == DISABLE_SIMULATION)
-            states[k] = read_static(coupled);
-        else
-            states[k] = read_dynamic(coupled, dt);
+    const double part = dt / seconds_;
+    const bool is_whole = part == 1.0 && elapsed_ == 0.0;
+    if (!is_whole) {
+        for (std::size_t k = 0; k < bodies_.size(); ++k)
+            motion_.set_free(k, sum(bodies_[k].twist, between(bodies_[k].start, bodies_[k].end, part)));
+        for (std::size_t k = bodies_.size(); k < motion_.bodies(); ++k) {
+            const std::size_t other = k - bodies_.size();
+            motion_.set_free(k, sum(elapsed_ > 0.0 ? twists_[k] : uncoupled_start_[other],
+                                    between(uncoupled_start_[other], uncoupled_end_[other], part)));
+        }
+        motion_.scale_bounds(part);
     }
+    guess_impulses(dt);
+    motion_.solve(impulses_);
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+        states[k] = {bodies_[k].pose, motion_.predicted()[k], bodies_[k].is_dynamic, bodies_[k].twist};
 }
 
-BodyState BulletBodies::read_static(Coupled& coupled) const
+/// Which joints and contacts will hold is guessed with the forces of the last Bullet step.
+void BulletBodies::guess_impulses(double dt)
 {
-    coupled.mobility = {};
-    coupled.predicted = coupled.unaided = {};
-    return {from_bullet(coupled.body->getWorldTransform()), coupled.predicted, false};
-}
-
-BodyState BulletBodies::read_kinematic(Coupled& coupled, double dt) const
-{
-    coupled.mobility = {};
-    coupled.predicted = coupled.unaided = coupled.kinematic.plan(*coupled.body, dt);
-    return {KinematicMotion::start_pose(*coupled.body), coupled.predicted, false, coupled.predicted};
-}
-
-BodyState BulletBodies::read_dynamic(Coupled& coupled, double dt) const
-{
-    btRigidBody& body = *coupled.body;
-    const FreeMotion motion = free_motion(body, dt, world_.getSolverInfo().m_maxGyroscopicForce);
-    coupled.is_asleep = !body.isActive();
-    coupled.mobility = mobility_of(body);
-    coupled.unaided = motion.end;
-    coupled.predicted = {};
-    Twist start;
-    if (!coupled.is_asleep) {
-        start = {from_bullet(body.getLinearVelocity()), from_bullet(body.getAngularVelocity())};
-        const Vec3d turned = motion.end.angular - motion.damped.angular;
-        const Vec3d leak = turned - coupled.mobility.held * turned; // about locked axes; exactly 0 without any
-        coupled.predicted = {motion.end.linear, motion.end.angular - leak};
-    }
-    return {from_bullet(body.getWorldTransform()), coupled.predicted, true, start};
+    std::fill(impulses_.begin(), impulses_.end(), Wrench{});
+    for (std::size_t k = 0; k < bodies_.size(); ++k) impulses_[k] = bodies_[k].last_given * dt;
 }
 
 void BulletBodies::respond(std::span<const Wrench> impulses, std::span<Twist> twists) const
 {
     FLOTSAM_ASSERT(impulses.size() == bodies_.size() && twists.size() == bodies_.size(), "one entry per body");
-    for (std::size_t k = 0; k < bodies_.size(); ++k) twists[k] = bodies_[k].mobility * impulses[k];
+    std::copy(impulses.begin(), impulses.end(), impulses_.begin());
+    std::fill(impulses_.begin() + static_cast<std::ptrdiff_t>(bodies_.size()), impulses_.end(), Wrench{});
+    motion_.respond(impulses_, answers_);
+    std::copy_n(answers_.begin(), bodies_.size(), twists.begin());
+}
+
+bool BulletBodies::own_mobility(std::span<Mat6d> blocks) const
+{
+    for (std::size_t k = 0; k < bodies_.size(); ++k) blocks[k] = motion_.own_mobility(k);
+    return true;
+}
+
+bool BulletBodies::revise(std::span<const Wrench> impulses, std::span<BodyState> states)
+{
+    // Of the velocity that gravity gives in a step: what a contact may be wrong by without anybody seeing it.
+    const double tolerance = 1e-3 * std::max(1e-3, static_cast<double>(world_.getGravity().length())) * dt_;
+    std::copy(impulses.begin(), impulses.end(), impulses_.begin());
+    std::fill(impulses_.begin() + static_cast<std::ptrdiff_t>(bodies_.size()), impulses_.end(), Wrench{});
+    if (motion_.holds(impulses_, tolerance)) return false;
+    motion_.solve(impulses_);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) states[k].predicted = motion_.predicted()[k];
+    return true;
 }
 
 void BulletBodies::apply(std::span<const Wrench> impulses)
 {
-    require(dt_ > 0.0 || bodies_.empty(), "apply needs a read before it");
+    require(is_open() || bodies_.empty(), "apply needs a read before it");
     require(impulses.size() == bodies_.size(), "apply needs one impulse per body", impulses.size());
+    std::copy(impulses.begin(), impulses.end(), impulses_.begin());
+    motion_.respond(impulses_, answers_);
+    for (std::size_t k = 0; k < motion_.bodies(); ++k) twists_[k] = sum(motion_.predicted()[k], answers_[k]);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        const Coupled& coupled = bodies_[k];
-        const bool is_touched = !is_zero(impulses[k].linear, impulses[k].angular);
-        if (coupled.body->isStaticOrKinematicObject() || (coupled.is_asleep && !is_touched)) continue;
-        if (is_touched) coupled.body->activate(true);
-        const Twist answer = coupled.mobility * impulses[k];
-        const Twist change{coupled.predicted.linear + answer.linear - coupled.unaided.linear,
-                           coupled.predicted.angular + answer.angular - coupled.unaided.angular};
-        if (!is_zero(change.linear, change.angular)) push(*coupled.body, change, dt_);
+        Coupled& coupled = bodies_[k];
+        coupled.given += impulses[k];
+        coupled.twist = twists_[k];
+        coupled.pose = moved(coupled.pose, coupled.twist, dt_);
     }
+    elapsed_ += dt_;
+    if (is_single_) finish();
+}
+
+void BulletBodies::finish()
+{
+    for (Coupled& coupled : bodies_) {
+        coupled.last_given = coupled.given * (1.0 / seconds_);
+        coupled.force = coupled.torque = Vec3d::Zero();
+        const Wrench& given = coupled.given;
+        if (coupled.was_kinematic) coupled.kinematic.reached(coupled.pose);
+        if (!coupled.is_dynamic || is_zero(given.linear, given.angular)) continue;
+        btRigidBody& body = *coupled.body;
+        body.activate(true);
+        const Twist aided = sum(coupled.end, coupled.mobility * given);
+        const Mat3d axes = from_bullet(body.getWorldTransform().getBasis());
+        const Vec3d inertia = from_bullet(body.getLocalInertia()); // 0 where the body never turns
+        coupled.force = static_cast<double>(body.getMass()) / seconds_ * (aided.linear - coupled.unaided.linear);
+        coupled.torque =
+            axes * inertia.asDiagonal() * axes.transpose() * (aided.angular - coupled.unaided.angular) / seconds_;
+        add_forces(body, coupled.force, coupled.torque);
+    }
+    seconds_ = 0.0;
+}
+
+void BulletBodies::take_back_forces()
+{
+    for (Coupled& coupled : bodies_) {
+        if (coupled.body == nullptr || is_zero(coupled.force, coupled.torque)) continue;
+        add_forces(*coupled.body, -coupled.force, -coupled.torque);
+        coupled.force = coupled.torque = Vec3d::Zero();
+    }
+}
+
+double BulletBodies::disagreement() const
+{
+    double most = 0.0;
+    for (const Coupled& coupled : bodies_) {
+        if (coupled.body == nullptr || !coupled.is_dynamic) continue;
+        most = std::max(most, (from_bullet(coupled.body->getLinearVelocity()) - coupled.twist.linear).norm());
+    }
+    return most;
 }
 
 void BulletBodies::before_bullet_step(double dt)
 {
     for (Coupled& coupled : bodies_)
-        if (coupled.was_kinematic && coupled.body->isKinematicObject()) coupled.kinematic.move(*coupled.body, dt);
+        if (coupled.body != nullptr && coupled.was_kinematic && coupled.body->isKinematicObject())
+            coupled.kinematic.move(*coupled.body, dt);
 }
 
 void BulletBodies::after_bullet_step()
 {
     for (Coupled& coupled : bodies_)
-        if (coupled.was_kinematic) coupled.kinematic.finish(*coupled.body);
+        if (coupled.body != nullptr && coupled.was_kinematic) coupled.kinematic.finish(*coupled.body);
 }
 
 } // namespace flotsam

@@ -6,22 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 namespace flotsam {
-
-struct BulletCoupling::Impl {
-    FluidWorld& fluid;
-    btDynamicsWorld& world;
-    BulletBodies bodies;
-
-    /// The longest step now; the first call has the fluid sampled and relaxed, which may change it.
-    double allowed_step()
-    {
-        fluid.prepare(bodies);
-        return fluid.allowed_time_step();
-    }
-};
-
 namespace {
 
 /// Motion in the plane y = 0, beside what is locked already.
@@ -31,14 +19,71 @@ void lock_to_plane(btRigidBody& body)
     body.setAngularFactor(body.getAngularFactor() * btVector3(0, 1, 0));
 }
 
+/// Runs as the last thing of each tick.
+class AfterTick final : public btActionInterface {
+  public:
+    explicit AfterTick(BulletCoupling& coupling) : coupling_(coupling) {}
+    void updateAction(btCollisionWorld*, btScalar) override { coupling_.after_tick(); }
+    void debugDraw(btIDebugDraw*) override {}
+
+  private:
+    BulletCoupling& coupling_;
+};
+
+void before_tick_callback(btDynamicsWorld* world, btScalar dt)
+{
+    static_cast<BulletCoupling*>(world->getWorldUserInfo())->before_tick(static_cast<double>(dt));
+}
+
+} // namespace
+
+struct BulletCoupling::Impl {
+    FluidWorld& fluid;
+    btDynamicsWorld& world;
+    BulletBodies bodies;
+    std::unique_ptr<AfterTick> after_tick; ///< while attached
+    void* user_info_before = nullptr;      ///< of the world
+    std::function<void(const StepReport&)> on_step;
+    double disagreement = 0.0; ///< of the last Bullet step
+    bool is_stepping = false;
+
+    /// The longest step now; the first call has the fluid sampled and relaxed, which may change it.
+    double allowed_step()
+    {
+        fluid.prepare(bodies);
+        return fluid.allowed_time_step();
+    }
+    void require_no_step() const
+    {
+        if (is_stepping) throw std::logic_error("bodies must not be added, removed or reshaped while a step runs");
+    }
+};
+
+namespace {
+
+/// Sets a flag for as long as it lives.
+class Flag {
+  public:
+    explicit Flag(bool& flag) : flag_(flag) { flag_ = true; }
+    ~Flag() { flag_ = false; }
+    Flag(const Flag&) = delete;
+    Flag& operator=(const Flag&) = delete;
+
+  private:
+    bool& flag_;
+};
+
 } // namespace
 
 BulletCoupling::BulletCoupling(FluidWorld& fluid, btDynamicsWorld& world)
-    : impl_(new Impl{fluid, world, BulletBodies(world)})
+    : impl_(new Impl{fluid, world, BulletBodies(world), nullptr, nullptr, {}})
 {
 }
 
-BulletCoupling::~BulletCoupling() = default;
+BulletCoupling::~BulletCoupling()
+{
+    detach();
+}
 
 int BulletCoupling::add(btRigidBody& body)
 {
@@ -48,9 +93,10 @@ int BulletCoupling::add(btRigidBody& body)
 
 int BulletCoupling::add(btRigidBody& body, const TriangleMesh& surface)
 {
+    impl_->require_no_step();
     require(impl_->world.getCollisionObjectArray().findLinearSearch(&body) < impl_->world.getNumCollisionObjects(),
             "a body must be in the Bullet world before it is coupled");
-    require(!impl_->bodies.contains(body), "a body must be coupled once only");
+    require(number_of(body) < 0, "a body must be coupled once only");
     require(impl_->fluid.body_count() == static_cast<int>(impl_->bodies.size()),
             "all bodies of a coupled FluidWorld must be added through its BulletCoupling");
     const int number = impl_->fluid.add_body(surface);
@@ -59,13 +105,40 @@ int BulletCoupling::add(btRigidBody& body, const TriangleMesh& surface)
     return number;
 }
 
+void BulletCoupling::remove(btRigidBody& body)
+{
+    impl_->require_no_step();
+    const int number = number_of(body);
+    require(number >= 0, "a body must be coupled to be removed");
+    impl_->fluid.remove_body(number);
+    impl_->bodies.remove(number);
+}
+
+void BulletCoupling::reshape(btRigidBody& body)
+{
+    require(body.getCollisionShape() != nullptr, "a coupled body must have a collision shape");
+    reshape(body, mesh_of(*body.getCollisionShape(), impl_->fluid.settings().particle_spacing));
+}
+
+void BulletCoupling::reshape(btRigidBody& body, const TriangleMesh& surface)
+{
+    impl_->require_no_step();
+    const int number = number_of(body);
+    require(number >= 0, "a body must be coupled to be reshaped");
+    impl_->fluid.reshape_body(number, surface);
+}
+
 StepReport BulletCoupling::step(double dt)
 {
     require(dt > 0.0 && std::isfinite(dt), "a step must be > 0 s and finite", dt);
+    require(impl_->after_tick == nullptr, "an attached coupling must be stepped by its world's stepSimulation");
+    impl_->require_no_step();
     const double allowed = impl_->allowed_step();
+    const Flag flag(impl_->is_stepping);
     StepReport report = impl_->fluid.step(std::min(dt, allowed), impl_->bodies);
     impl_->bodies.before_bullet_step(report.dt);
     impl_->world.stepSimulation(static_cast<btScalar>(report.dt), 0); // 0: one step of exactly this length
+    report.disagreement = impl_->bodies.disagreement();
     impl_->bodies.after_bullet_step();
     return report;
 }
@@ -77,6 +150,46 @@ void BulletCoupling::step_for(double seconds)
     while (left > 0.0) left -= step(next_step(left, impl_->allowed_step())).dt;
 }
 
+void BulletCoupling::attach(std::function<void(const StepReport&)> on_step)
+{
+    require(impl_->after_tick == nullptr, "a coupling must be attached once only");
+    impl_->on_step = std::move(on_step);
+    impl_->user_info_before = impl_->world.getWorldUserInfo();
+    impl_->world.setInternalTickCallback(before_tick_callback, this, true);
+    impl_->after_tick = std::make_unique<AfterTick>(*this);
+    impl_->world.addAction(impl_->after_tick.get());
+}
+
+void BulletCoupling::detach()
+{
+    if (impl_->after_tick == nullptr) return;
+    impl_->world.setInternalTickCallback(nullptr, impl_->user_info_before, true);
+    impl_->world.removeAction(impl_->after_tick.get());
+    impl_->after_tick.reset();
+}
+
+void BulletCoupling::before_tick(double dt)
+{
+    require(dt > 0.0 && std::isfinite(dt), "a tick must be > 0 s and finite", dt);
+    impl_->is_stepping = true; // until the tick is over
+    impl_->bodies.begin(dt, true);
+    impl_->allowed_step();
+    for (double left = dt; left > 0.0;) {
+        StepReport report = impl_->fluid.step(next_step(left, impl_->fluid.allowed_time_step()), impl_->bodies);
+        report.disagreement = std::exchange(impl_->disagreement, 0.0);
+        left -= report.dt;
+        if (impl_->on_step) impl_->on_step(report);
+    }
+    impl_->bodies.finish();
+}
+
+void BulletCoupling::after_tick()
+{
+    impl_->bodies.take_back_forces();
+    impl_->disagreement = impl_->bodies.disagreement();
+    impl_->is_stepping = false;
+}
+
 Bodies& BulletCoupling::bodies()
 {
     return impl_->bodies;
@@ -85,6 +198,11 @@ Bodies& BulletCoupling::bodies()
 btRigidBody& BulletCoupling::body(int number) const
 {
     return impl_->bodies.body(number);
+}
+
+int BulletCoupling::number_of(const btRigidBody& body) const
+{
+    return impl_->bodies.number_of(body);
 }
 
 } // namespace flotsam

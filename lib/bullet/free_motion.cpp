@@ -20,7 +20,7 @@ btVector3 gyroscopic_change(const btRigidBody& body, btScalar dt, btScalar max_f
 
 } // namespace
 
-FreeMotion free_motion(btRigidBody& body, double dt, btScalar max_gyroscopic_force)
+FreeMotion free_motion(btRigidBody& body, double dt, btScalar max_gyroscopic_force, bool has_gravity)
 {
     const btVector3 linear = body.getLinearVelocity(), angular = body.getAngularVelocity();
     const auto step = static_cast<btScalar>(dt);
@@ -28,7 +28,8 @@ FreeMotion free_motion(btRigidBody& body, double dt, btScalar max_gyroscopic_for
     body.applyDamping(step);
     const btVector3 damped_linear = body.getLinearVelocity(), damped_angular = body.getAngularVelocity();
 
-    const btVector3 gravity = body.getGravity() * body.getLinearFactor(); // an acceleration
+    btVector3 gravity(0, 0, 0); // an acceleration
+    if (!has_gravity) gravity = body.getGravity() * body.getLinearFactor();
     const btVector3 end_linear = damped_linear + (body.getTotalForce() * body.getInvMass() + gravity) * step;
     const btVector3 end_angular = damped_angular + body.getTotalTorque() * body.getInvInertiaTensorWorld() * step +
                                   gyroscopic_change(body, step, max_gyroscopic_force);

@@ -15,7 +15,7 @@ struct FreeMotion {
 /// The same operations in the same order as btDiscreteDynamicsWorld::stepSimulation(dt, 0) of Bullet 3.24:
 /// applyGravity, applyDamping, then the solver's external force and torque impulses. Damping and gyroscopic terms are
 /// computed by Bullet's own functions on the body, whose velocity is put back afterwards. The body's world inertia is
-/// brought up to date.
-[[nodiscard]] FreeMotion free_motion(btRigidBody& body, double dt, btScalar max_gyroscopic_force);
+/// brought up to date. `has_gravity`: applyGravity is done already, as in a tick.
+[[nodiscard]] FreeMotion free_motion(btRigidBody& body, double dt, btScalar max_gyroscopic_force, bool has_gravity);
 
 } // namespace flotsam

@@ -5,6 +5,8 @@
 #include <LinearMath/btMotionState.h>
 #include <LinearMath/btTransformUtil.h>
 
+#include <algorithm>
+
 namespace flotsam {
 
 namespace {
@@ -47,6 +49,21 @@ Twist KinematicMotion::plan(const btRigidBody& body, double dt)
         set_angular_ = body.getAngularVelocity();
     }
     return twist_from_bullet(set_linear_, set_angular_);
+}
+
+Twist KinematicMotion::plan_in_tick(const btRigidBody& body, double dt)
+{
+    const Pose target = from_bullet(body.getWorldTransform());
+    const Twist mean = twist_from_bullet(body.getLinearVelocity(), body.getAngularVelocity());
+    const bool stands = mean.linear.isZero(0.0) && mean.angular.isZero(0.0); // or was put there without a velocity
+    if (!rides_ || stands) pose_in_tick_ = target;
+    rides_ = true;
+    if (stands) return {};
+    const Eigen::AngleAxisd turn((target.orientation * pose_in_tick_.orientation.conjugate()).normalized());
+    const Twist rest{(target.position - pose_in_tick_.position) / dt, turn.angle() / dt * turn.axis()};
+    const double rest_rate = rest.linear.norm() + rest.angular.norm();
+    const double part = std::min(1.0, (mean.linear.norm() + mean.angular.norm()) / std::max(rest_rate, 1e-300));
+    return {part * rest.linear, part * rest.angular};
 }
 
 void KinematicMotion::move(btRigidBody& body, double dt) const

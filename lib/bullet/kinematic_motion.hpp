@@ -26,7 +26,15 @@ class KinematicMotion {
 
     [[nodiscard]] static Pose start_pose(const btRigidBody& body);
 
+    // The same within a tick of the application's own stepSimulation, which has put the body where it is to be after
+    // its last sub-step and has set its velocity accordingly. A body put elsewhere without a velocity is there at once.
+    Twist plan_in_tick(const btRigidBody& body, double dt);
+    [[nodiscard]] const Pose& pose_in_tick() const { return pose_in_tick_; } ///< after plan_in_tick
+    void reached(const Pose& pose) { pose_in_tick_ = pose; }
+
   private:
+    Pose pose_in_tick_;
+    bool rides_ = false; ///< has been planned in a tick
     btTransform seen_pose_ = btTransform::getIdentity();
     btVector3 seen_linear_{0, 0, 0}, seen_angular_{0, 0, 0};
     btVector3 set_linear_{0, 0, 0}, set_angular_{0, 0, 0};

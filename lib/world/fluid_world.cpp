@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
 
 namespace flotsam {
@@ -115,17 +116,6 @@ int FluidWorld::add_box_wall(const Aabb& given, const std::vector<std::string>& 
     return number;
 }
 
-int FluidWorld::add_body(const TriangleMesh& closed_about_center_of_mass)
-{
-    require(!impl_->prepared, "bodies must be added before the first step");
-    require(!closed_about_center_of_mass.empty(), "a body needs a closed mesh");
-    BodySurface body;
-    body.mesh = closed_about_center_of_mass;
-    body.name = "body " + std::to_string(body_count());
-    impl_->bodies.push_back(std::move(body));
-    return body_count() - 1;
-}
-
 void FluidWorld::name_wall(int wall, const std::string& name)
 {
     require(wall >= 0 && wall < wall_count(), "no wall has this number", wall);
@@ -135,9 +125,7 @@ void FluidWorld::name_wall(int wall, const std::string& name)
 
 void FluidWorld::name_body(int body, const std::string& name)
 {
-    require(body >= 0 && body < body_count(), "no body has this number", body);
-    require(!impl_->prepared, "bodies must be named before the first step");
-    impl_->bodies[static_cast<std::size_t>(body)].name = name;
+    impl_->body(body).name = name;
 }
 
 void FluidWorld::prepare(Bodies& bodies)
@@ -172,7 +160,16 @@ StepReport FluidWorld::step(double dt, Bodies& bodies)
 {
     require(dt > 0.0 && std::isfinite(dt), "dt must be > 0 [s]", dt);
     impl_->prepare(bodies);
-    return impl_->step(dt, bodies);
+    impl_->require_no_step();
+    impl_->is_stepping = true;
+    try {
+        StepReport report = impl_->step(dt, bodies);
+        impl_->is_stepping = false;
+        return report;
+    } catch (...) {
+        impl_->is_stepping = false;
+        throw;
+    }
 }
 
 const FluidWorldSettings& FluidWorld::settings() const
@@ -214,8 +211,9 @@ const TriangleMesh& FluidWorld::wall_mesh(int wall) const
 Wrench FluidWorld::fluid_wrench(int body) const
 {
     require(body >= 0 && body < body_count(), "no body has this number", body);
-    if (!(impl_->last_dt > 0.0)) return {};
-    return impl_->total[impl_->walls.size() + static_cast<std::size_t>(body)] * (1.0 / impl_->last_dt);
+    const std::size_t owner = impl_->walls.size() + static_cast<std::size_t>(body);
+    if (!(impl_->last_dt > 0.0) || owner >= impl_->total.size()) return {}; // added since the last step
+    return impl_->total[owner] * (1.0 / impl_->last_dt);
 }
 
 Vec3d FluidWorld::wall_force(int wall) const
@@ -239,7 +237,8 @@ std::uint64_t FluidWorld::state_hash() const
 {
     const FluidState& fluid = impl_->fluid;
     std::vector<std::uint32_t> slot(fluid.size());
-    for (std::size_t i = 0; i < fluid.size(); ++i) slot[fluid.id[i]] = static_cast<std::uint32_t>(i);
+    std::iota(slot.begin(), slot.end(), 0u);
+    std::sort(slot.begin(), slot.end(), [&](std::uint32_t a, std::uint32_t b) { return fluid.id[a] < fluid.id[b]; });
     StateHash hash;
     hash.add_bytes(&impl_->time, sizeof impl_->time);
     for (const std::uint32_t i : slot) {

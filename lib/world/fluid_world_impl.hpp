@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -33,9 +34,11 @@ struct Wall {
 
 /// A body's surface about its centre of mass.
 struct BodySurface {
-    TriangleMesh mesh;
-    std::string name; ///< in notes
+    TriangleMesh mesh; ///< empty: removed
+    std::string name;  ///< in notes
     std::unique_ptr<SurfaceQuery> query;
+    bool is_changed = false;       ///< added or reshaped since the last step
+    std::optional<Pose> last_pose; ///< at the end of the last step, as the fluid had it
 };
 
 /// Water that was asked for, before it is cut.
@@ -66,6 +69,7 @@ struct FluidWorld::Impl {
     double max_pressure = 0.0; ///< of the last step; before it the hydrostatic one [Pa]
     double max_speed = 0.0;    ///< of fluid and bodies [m/s]
     bool prepared = false;
+    bool is_stepping = false;
     std::vector<std::string> notes;
 
     std::vector<FluidSeed> seeds;
@@ -81,6 +85,7 @@ struct FluidWorld::Impl {
     CellLists fluid_cells, boundary_cells;
     NeighbourSearch search, boundary_search;
     Pairs fluid_pairs, boundary_pairs;
+    std::size_t paired_samples = 0; ///< boundary samples that there were when boundary_pairs was found
     ContactBuilder contact_builder;
     Contacts contacts;
     Viscosity viscosity;
@@ -89,11 +94,12 @@ struct FluidWorld::Impl {
     PressureOperator pressure_operator;
     WallGuard guard;
     std::vector<BodyState> states;
-    std::vector<Vec3d> centers; ///< of each owner
-    std::vector<Twist> twists;  ///< of each owner, predicted
-    std::vector<Wrench> pushed; ///< pressure impulses of each owner [N s]
-    std::vector<Wrench> rubbed; ///< viscous impulses of each owner [N s]
-    std::vector<Wrench> total;  ///< of each owner over the last step [N s]
+    std::vector<Vec3d> centers;  ///< of each owner
+    std::vector<Twist> twists;   ///< of each owner, predicted
+    std::vector<Wrench> pushed;  ///< pressure impulses of each owner [N s]
+    std::vector<Wrench> rubbed;  ///< viscous impulses of each owner [N s]
+    std::vector<Wrench> total;   ///< of each owner over the last step [N s]
+    std::vector<Wrench> offered; ///< total and pushed, while joints and contacts are asked about them [N s]
     std::vector<Vec4> predicted, change, shift, new_position, new_velocity;
     std::vector<Scalar> multiplier, shift_multiplier, source, diagonal, shift_diagonal;
     std::vector<Eigen::Matrix<double, 6, 6>> mobility;
@@ -124,7 +130,8 @@ struct FluidWorld::Impl {
     [[nodiscard]] bool touches_body(std::span<const BodyState> at, const Vec3d& point, double away) const;
 
     // forces_on_bodies.cpp, surface_pressure.cpp
-    [[nodiscard]] bool is_pushed(std::size_t owner) const;
+    [[nodiscard]] bool is_touched(std::size_t owner) const;
+    [[nodiscard]] bool has_pushes(std::size_t owner) const;
     [[nodiscard]] ByCause<Wrench> wrenches(std::size_t owner) const;
     [[nodiscard]] Wrench hydrostatic(std::size_t body, std::optional<double> level) const;
     template <class Visit>
@@ -136,9 +143,22 @@ struct FluidWorld::Impl {
     void seed_where_dry(FluidSeed seed);
     void cut_and_place_fluid();
     void sample_surfaces();
-    void relax();
+    void sample_body(std::size_t k);
+    void sample_surface_of(std::size_t owner, const SurfaceQuery& surface, SurfaceSampleSettings::Solid solid,
+                           const std::string& name);
+    void relax(int max_rounds);
     void guard_relaxation();
     [[nodiscard]] bool in_solid(const Vec3d& point) const;
+    [[nodiscard]] bool in_body(std::size_t k, const Pose& pose, const Vec3d& point) const;
+
+    // change_bodies.cpp
+    void require_no_step() const;
+    [[nodiscard]] BodySurface& body(int number);
+    void remove_samples(std::size_t owner);
+    void take_in_changes(StepReport& report);
+    [[nodiscard]] bool has_jumped(std::size_t k) const;
+    void make_room(std::size_t k, StepReport& report);
+    void remove_particles(std::span<const std::uint32_t> rising, StepReport& report);
 
     // step.cpp
     StepReport step(double dt, Bodies& port);
@@ -150,7 +170,15 @@ struct FluidWorld::Impl {
     void add_forces(double dt, Bodies& port, StepReport& report);
     void solve_pressure(double dt, Bodies& port, StepReport& report);
     void respond(Bodies& port, std::span<const Wrench> impulses, std::span<Twist> answers) const;
+    void predict_twists(Bodies& port);
     void build_mobility(Bodies& port);
+    void find_mobility(Bodies& port);
+    void solve_velocities(const PressureSystem& system, double dt, bool split, Bodies& port, StepReport& report);
+    [[nodiscard]] bool revise(Bodies& port);
+    [[nodiscard]] bool is_strong() const
+    {
+        return settings.pressure.coupling == PressureSettings::Coupling::strong && !bodies.empty();
+    }
     [[nodiscard]] SolveResult solve_shift();
     [[nodiscard]] bool shift_if_possible(StepReport& report);
     void advance(double dt, Bodies& port, StepReport& report);
@@ -164,7 +192,7 @@ struct FluidWorld::Impl {
 };
 
 /// Calls visit(i, b, force) for the pressure force [N] of each particle i on each sample b of an owner in the last
-/// step, i rising: the terms that Contacts has summed up, m p_i / rho_i^2 rho0 V_b grad W_ib.
+/// step, i rising; has_pushes must hold: the terms that Contacts has summed up, m p_i / rho_i^2 rho0 V_b grad W_ib.
 template <class Visit>
 void FluidWorld::Impl::visit_pushes(std::size_t owner, Visit&& visit) const
 {

@@ -52,7 +52,7 @@ void FluidWorld::Impl::prepare(Bodies& port)
     for (const BodySurface& body : bodies) surfaces.push_back({body.query.get(), false, true});
     guard.build(std::move(surfaces), spacing(), workers);
     place_body_samples();
-    relax();
+    relax(60);
 }
 
 void FluidWorld::Impl::choose_wall_sides()
@@ -76,7 +76,8 @@ void FluidWorld::Impl::choose_wall_sides()
         const bool container = std::abs(mean) > 0.5;
         wall.side = container ? WallSide::inside : is_closed(wall.mesh) ? WallSide::outside : WallSide::both;
     }
-    for (BodySurface& body : bodies) body.query = std::make_unique<SurfaceQuery>(body.mesh);
+    for (BodySurface& body : bodies)
+        if (!body.mesh.empty()) body.query = std::make_unique<SurfaceQuery>(body.mesh);
 }
 
 bool FluidWorld::Impl::in_solid(const Vec3d& point) const
@@ -89,11 +90,16 @@ bool FluidWorld::Impl::in_solid(const Vec3d& point) const
         if (wall.side == WallSide::both) continue;
         if (wall.query->inside(point) == (wall.side == WallSide::outside)) return true;
     }
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-        const Vec3d local = states[k].pose.to_body(point);
-        if (bodies[k].query->bounds().contains(local) && bodies[k].query->inside(local)) return true;
-    }
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+        if (in_body(k, states[k].pose, point)) return true;
     return false;
+}
+
+bool FluidWorld::Impl::in_body(std::size_t k, const Pose& pose, const Vec3d& point) const
+{
+    if (!bodies[k].query) return false; // removed
+    const Vec3d local = pose.to_body(point);
+    return bodies[k].query->bounds().contains(local) && bodies[k].query->inside(local);
 }
 
 void FluidWorld::Impl::cut_and_place_fluid()
@@ -145,51 +151,56 @@ void FluidWorld::Impl::cut_and_place_fluid()
 
 void FluidWorld::Impl::sample_surfaces()
 {
+    using Solid = SurfaceSampleSettings::Solid;
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+        const WallSide side = walls[k].side;
+        const Solid solid = side == WallSide::inside    ? Solid::outside
+                            : side == WallSide::outside ? Solid::inside
+                                                        : Solid::both;
+        sample_surface_of(k, *walls[k].query, solid, walls[k].name);
+    }
+    for (std::size_t k = 0; k < bodies.size(); ++k) sample_body(k);
+}
+
+void FluidWorld::Impl::sample_body(std::size_t k)
+{
+    if (!bodies[k].query) return; // removed
+    sample_surface_of(walls.size() + k, *bodies[k].query, SurfaceSampleSettings::Solid::inside, bodies[k].name);
+}
+
+void FluidWorld::Impl::sample_surface_of(std::size_t owner, const SurfaceQuery& surface,
+                                         SurfaceSampleSettings::Solid solid, const std::string& name)
+{
     SurfaceSampleSettings sampling;
     sampling.spacing = 0.7 * spacing();
     sampling.inset = boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
     sampling.dimensions = settings.dimensions;
-    const auto add = [&](const SurfaceSamples& samples, std::size_t owner, const std::string& name) {
-        const std::vector<double> volumes =
-            sample_volumes(samples.positions, samples.depth, settings.kernel, spacing(), settings.dimensions);
-        for (std::size_t b = 0; b < volumes.size(); ++b) {
-            Vec4 position = Vec4::Zero();
-            position.head<3>() = samples.positions[b].cast<Scalar>();
-            boundary.position.push_back(position);
-            boundary.volume.push_back(static_cast<Scalar>(volumes[b]));
-            boundary.velocity.push_back(Vec4::Zero());
-            boundary.owner.push_back(static_cast<std::int32_t>(owner));
-            boundary.position_body.push_back(samples.positions[b]);
-        }
-        if (samples.thin_fraction > 0.0) {
-            std::ostringstream note;
-            note << name << " is thinner than two layers of samples take, " << 2.0 * sampling.inset << " m, on "
-                 << std::lround(100.0 * samples.thin_fraction)
-                 << " % of its surface: one layer of samples in its middle";
-            notes.push_back(note.str());
-        }
-    };
-    for (std::size_t k = 0; k < walls.size(); ++k) {
-        using Solid = SurfaceSampleSettings::Solid;
-        const WallSide side = walls[k].side;
-        sampling.solid = side == WallSide::inside    ? Solid::outside
-                         : side == WallSide::outside ? Solid::inside
-                                                     : Solid::both;
-        add(sample_surface(*walls[k].query, sampling), k, walls[k].name);
+    sampling.solid = solid;
+    const SurfaceSamples samples = sample_surface(surface, sampling);
+    const std::vector<double> volumes =
+        sample_volumes(samples.positions, samples.depth, settings.kernel, spacing(), settings.dimensions);
+    for (std::size_t b = 0; b < volumes.size(); ++b) {
+        Vec4 position = Vec4::Zero();
+        position.head<3>() = samples.positions[b].cast<Scalar>();
+        boundary.position.push_back(position);
+        boundary.volume.push_back(static_cast<Scalar>(volumes[b]));
+        boundary.velocity.push_back(Vec4::Zero());
+        boundary.owner.push_back(static_cast<std::int32_t>(owner));
+        boundary.position_body.push_back(samples.positions[b]);
     }
-    sampling.solid = SurfaceSampleSettings::Solid::inside;
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-        add(sample_surface(*bodies[k].query, sampling), walls.size() + k, bodies[k].name);
-    }
+    if (!(samples.thin_fraction > 0.0)) return;
+    std::ostringstream note;
+    note << name << " is thinner than two layers of samples take, " << 2.0 * sampling.inset << " m, on "
+         << std::lround(100.0 * samples.thin_fraction) << " % of its surface: one layer of samples in its middle";
+    notes.push_back(note.str());
 }
 
 /// The lattice of the start is a little too dense where it was cut or stretched: shift it to rest density before any
 /// velocity can come of it.
-void FluidWorld::Impl::relax()
+void FluidWorld::Impl::relax(int max_rounds)
 {
-    constexpr int kMaxRounds = 60;
     StepReport ignored;
-    for (int round = 0; round < kMaxRounds && fluid.size() > 0; ++round) {
+    for (int round = 0; round < max_rounds && fluid.size() > 0; ++round) {
         find_neighbours();
         measure_density(ignored);
         if (ignored.compression_mean <= 0.5 * settings.pressure.tolerance && ignored.compression_max < 0.01) break;

@@ -150,6 +150,7 @@ std::optional<double> FluidWorld::level_at(double x, double y) const
 bool FluidWorld::Impl::line_passes_body(std::span<const BodyState> at, double x, double y, double away) const
 {
     for (std::size_t k = 0; k < at.size(); ++k) {
+        if (!bodies[k].query) continue; // removed
         const Aabb box = bodies[k].query->bounds();
         Vec3d corner = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs());
         if (settings.dimensions == 2) corner.y() = 0.0;
@@ -166,6 +167,7 @@ bool FluidWorld::Impl::touches_body(std::span<const BodyState> at, const Vec3d& 
 {
     const double reach = away * spacing();
     for (std::size_t k = 0; k < at.size(); ++k) {
+        if (!bodies[k].query) continue; // removed
         const SurfaceQuery& query = *bodies[k].query;
         const Vec3d local = at[k].pose.to_body(point);
         if (query.bounds().inflated(reach).contains(local) && query.signed_distance(local) < reach) return true;

@@ -12,9 +12,19 @@ ComplementaritySolver& FluidWorld::Impl::solver()
     return relaxed_jacobi;
 }
 
+/// Zero for walls and for bodies that do not respond or touch no fluid.
 void FluidWorld::Impl::build_mobility(Bodies& port)
 {
     mobility.assign(owners(), Eigen::Matrix<double, 6, 6>::Zero());
+    if (!port.own_mobility(std::span(mobility).subspan(walls.size()))) find_mobility(port);
+    for (std::size_t k = walls.size(); k < owners(); ++k) {
+        const bool is_touched = contacts.start[k] != contacts.start[k + 1];
+        if (!states[k - walls.size()].responds || !is_touched) mobility[k].setZero();
+    }
+}
+
+void FluidWorld::Impl::find_mobility(Bodies& port)
+{
     unit.assign(owners(), Wrench{});
     for (std::size_t k = walls.size(); k < owners(); ++k) {
         if (!states[k - walls.size()].responds || contacts.start[k] == contacts.start[k + 1]) continue;
@@ -81,18 +91,48 @@ bool FluidWorld::Impl::shift_if_possible(StepReport& report)
 
 void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& report)
 {
+    constexpr int kMostRounds = 6; // of the solve, until joints and contacts hold and yield as it has them
+    const std::size_t n = fluid.size();
+    shift_diagonal.resize(n);
+    const bool split = shift_if_possible(report);
+    // The split leaves no density error in the pressure, so all of the last one is a good start; with the published
+    // source a full start integrates the error and rings.
+    const Scalar keep = split ? Scalar(1) : Scalar(0.5);
+    multiplier.resize(n);
+    workers.for_each(n, [&](std::size_t i) {
+        multiplier[i] = keep * static_cast<Scalar>(dt) * fluid.pressure[i] / (fluid.density[i] * fluid.density[i]);
+    });
+
+    const PressureSystem system(fluid_pairs, contacts, fluid.particle_mass, workers);
+    pushed.resize(owners());
+    bool again = true;
+    for (report.rounds = 0; again && report.rounds < kMostRounds; ++report.rounds) {
+        solve_velocities(system, dt, split, port, report);
+        system.impulses(multiplier, pushed);
+        again = is_strong() && revise(port);
+    }
+    report.converged = report.converged && !again;
+
+    change.resize(n);
+    system.velocity_change(multiplier, change);
+    for (std::size_t k = 0; k < owners(); ++k) total[k] += pushed[k];
+    const Scalar inv_dt = static_cast<Scalar>(1.0 / dt);
+    workers.for_each(
+        n, [&](std::size_t i) { fluid.pressure[i] = multiplier[i] * fluid.density[i] * fluid.density[i] * inv_dt; });
+}
+
+/// One solve for `multiplier` with the bodies' response as it is.
+void FluidWorld::Impl::solve_velocities(const PressureSystem& system, double dt, bool split, Bodies& port,
+                                        StepReport& report)
+{
     const std::size_t n = fluid.size();
     const PressureSettings& pressure = settings.pressure;
     const double rho0 = settings.rest_density;
-    shift_diagonal.resize(n);
-    const bool split = shift_if_possible(report);
     // What the shift has taken out is none of the velocities' work; in place of a shift they do it, and slowly.
     const bool published = pressure.source == PressureSettings::Source::published;
     const Scalar most_error = split       ? Scalar(0)
                               : published ? std::numeric_limits<Scalar>::infinity()
                                           : static_cast<Scalar>(0.02 * rho0);
-
-    const PressureSystem system(fluid_pairs, contacts, fluid.particle_mass, workers);
     source.resize(n);
     system.density_rate(predicted, twists, source);
     const Scalar inv_dt = static_cast<Scalar>(1.0 / dt);
@@ -100,11 +140,9 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
         const Scalar error = fluid.density[i] - static_cast<Scalar>(rho0);
         source[i] += inv_dt * std::min(most_error, error);
     });
-
     diagonal.resize(n);
     system.fluid_diagonal(diagonal);
-    const bool strong = pressure.coupling == PressureSettings::Coupling::strong && !bodies.empty();
-    if (strong) {
+    if (is_strong()) {
         build_mobility(port);
         const bool exact = pressure.solver == PressureSettings::Solver::mprgp;
         system.add_response_diagonal(mobility, exact, diagonal);
@@ -113,31 +151,25 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
         respond(port, impulses, answers);
     };
     const OwnerResponse response = answer_impulses;
-    pressure_operator.bind(system, strong ? &response : nullptr, owners());
-
-    // The split leaves no density error in the pressure, so all of the last one is a good start; with the published
-    // source a full start integrates the error and rings.
-    const Scalar keep = split ? Scalar(1) : Scalar(0.5);
-    multiplier.resize(n);
-    workers.for_each(n, [&](std::size_t i) {
-        multiplier[i] = keep * static_cast<Scalar>(dt) * fluid.pressure[i] / (fluid.density[i] * fluid.density[i]);
-    });
+    pressure_operator.bind(system, is_strong() ? &response : nullptr, owners());
     SolveGoal goal;
     goal.scale = dt / rho0;
     goal.tolerance = split ? pressure.velocity_tolerance : pressure.tolerance;
     goal.max_iterations = pressure.max_iterations;
     const SolveResult result = solver().solve(pressure_operator, source, diagonal, goal, multiplier);
-    report.iterations = result.iterations;
+    report.iterations += result.iterations;
     report.residual = result.residual;
     report.converged = report.converged && result.converged;
+}
 
-    change.resize(n);
-    system.velocity_change(multiplier, change);
-    pushed.resize(owners());
-    system.impulses(multiplier, pushed);
-    for (std::size_t k = 0; k < owners(); ++k) total[k] += pushed[k];
-    workers.for_each(
-        n, [&](std::size_t i) { fluid.pressure[i] = multiplier[i] * fluid.density[i] * fluid.density[i] * inv_dt; });
+/// Whether joints and contacts yield or hold otherwise than the last solve had it; then with new twists of the bodies.
+bool FluidWorld::Impl::revise(Bodies& port)
+{
+    offered.assign(total.begin(), total.end());
+    for (std::size_t k = 0; k < owners(); ++k) offered[k] += pushed[k];
+    if (!port.revise(std::span<const Wrench>(offered).subspan(walls.size()), states)) return false;
+    predict_twists(port);
+    return true;
 }
 
 } // namespace flotsam

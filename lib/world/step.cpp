@@ -32,14 +32,6 @@ void reorder(std::vector<T>& values, std::vector<T>& scratch, std::span<const st
     values.swap(scratch);
 }
 
-Pose moved(const Pose& pose, const Twist& twist, double dt)
-{
-    const Vec3d turn = twist.angular * dt;
-    const double angle = turn.norm();
-    const Quatd rotation = angle > 0.0 ? Quatd(Eigen::AngleAxisd(angle, turn / angle)) : Quatd::Identity();
-    return {pose.position + dt * twist.linear, (rotation * pose.orientation).normalized()};
-}
-
 } // namespace
 
 StepReport FluidWorld::Impl::step(double dt, Bodies& port)
@@ -49,6 +41,7 @@ StepReport FluidWorld::Impl::step(double dt, Bodies& port)
     {
         const StageClock clock(report.seconds.bodies);
         read_bodies(dt, port);
+        take_in_changes(report);
         place_body_samples();
     }
     {
@@ -109,6 +102,7 @@ void FluidWorld::Impl::find_neighbours()
     fluid_cells.build(grid, fluid.position, workers);
     sort_particles();
     boundary_cells.build(grid, boundary.position, workers);
+    paired_samples = boundary.size();
     kernel.visit([&](const auto& spline) {
         search.find(spline, grid, fluid_cells, fluid.position, fluid.position, true, workers, fluid_pairs);
         boundary_search.find(spline, grid, boundary_cells, fluid.position, boundary.position, false, workers,
@@ -158,11 +152,17 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
         viscosity.add(viscous, dt, fluid, boundary, fluid_pairs, boundary_pairs, centers, workers, predicted, total);
     }
     rubbed = total;
+    predict_twists(port);
+}
+
+/// At the end of the step without pressure.
+void FluidWorld::Impl::predict_twists(Bodies& port)
+{
     answer.resize(owners());
     respond(port, total, answer);
     for (std::size_t k = walls.size(); k < owners(); ++k) {
-        twists[k].linear += answer[k].linear;
-        twists[k].angular += answer[k].angular;
+        const Twist& without_fluid = states[k - walls.size()].predicted;
+        twists[k] = {without_fluid.linear + answer[k].linear, without_fluid.angular + answer[k].angular};
     }
 }
 
@@ -224,6 +224,7 @@ void FluidWorld::Impl::guard_walls(double dt, Bodies& port, StepReport& report)
         const Twist twist{state.predicted.linear + answer[owner].linear,
                           state.predicted.angular + answer[owner].angular};
         motion[owner] = {state.pose, moved(state.pose, twist, dt), twist};
+        bodies[k].last_pose = motion[owner].after;
     }
     const GuardReport guard_report =
         guard.stop(fluid.position, new_position, new_velocity, motion, fluid.particle_mass, workers, guarded);

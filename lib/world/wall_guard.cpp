@@ -6,14 +6,23 @@
 
 namespace flotsam {
 
-void WallGuard::build(std::vector<GuardedSurface> surfaces, double particle_spacing, const Workers& workers)
+void WallGuard::build(const std::vector<GuardedSurface>& surfaces, double particle_spacing, const Workers& workers)
 {
-    surfaces_ = std::move(surfaces);
+    surfaces_.clear();
     bounds_.clear();
-    bounds_.reserve(surfaces_.size());
-    for (const GuardedSurface& surface : surfaces_) {
-        bounds_.emplace_back(*surface.query, particle_spacing, 3.0 * particle_spacing, workers);
+    for (const GuardedSurface& surface : surfaces) change(surfaces_.size(), surface, particle_spacing, workers);
+}
+
+void WallGuard::change(std::size_t k, const GuardedSurface& surface, double particle_spacing, const Workers& workers)
+{
+    FLOTSAM_ASSERT(k <= surfaces_.size(), "surfaces are numbered without gaps");
+    if (k == surfaces_.size()) {
+        surfaces_.emplace_back();
+        bounds_.emplace_back();
     }
+    surfaces_[k] = surface;
+    bounds_[k].reset();
+    if (surface.query != nullptr) bounds_[k].emplace(*surface.query, particle_spacing, 3.0 * particle_spacing, workers);
     clearance_ = 0.02 * particle_spacing;
 }
 
@@ -46,10 +55,11 @@ GuardReport WallGuard::stop(std::span<const Vec4> from, std::span<Vec4> to, std:
 bool WallGuard::may_hit(const Vec3d& from, const Vec3d& to, std::span<const GuardedMotion> motion) const
 {
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+        if (!bounds_[k]) continue;
         const Vec3d a = motion[k].before.to_body(from);
         const Vec3d b = motion[k].after.to_body(to);
         // A path of length L that passes the surface has distance(a) + distance(b) <= L.
-        if (bounds_[k].at(a) + bounds_[k].at(b) <= (b - a).norm() + 2.0 * clearance_) return true;
+        if (bounds_[k]->at(a) + bounds_[k]->at(b) <= (b - a).norm() + 2.0 * clearance_) return true;
     }
     return false;
 }
@@ -60,6 +70,7 @@ std::optional<WallGuard::Hit> WallGuard::first_hit(const Vec3d& from, const Vec3
     std::optional<Hit> first;
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         const GuardedSurface& surface = surfaces_[k];
+        if (surface.query == nullptr) continue;
         Vec3d a = motion[k].before.to_body(from);
         const Vec3d b = motion[k].after.to_body(to);
         double start = 0.0;

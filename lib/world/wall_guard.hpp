@@ -4,6 +4,7 @@
 #include "flotsam/geometry/surface_query.hpp"
 #include "world/distance_bounds.hpp"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,10 @@ struct GuardReport {
 /// distance clears nearly all particles; the rest ask SurfaceQuery.
 class WallGuard {
   public:
-    void build(std::vector<GuardedSurface> surfaces, double particle_spacing, const Workers& workers);
+    void build(const std::vector<GuardedSurface>& surfaces, double particle_spacing, const Workers& workers);
+    [[nodiscard]] std::size_t surfaces() const { return surfaces_.size(); }
+    /// Replaces surface k, or adds it where k is their number; one without a query stops nothing.
+    void change(std::size_t k, const GuardedSurface& surface, double particle_spacing, const Workers& workers);
 
     /// `from` and `to`: positions at both ends of the step; `to` and `velocity` are corrected. `impulses`: one per
     /// surface, about motion.before.position, added to.
@@ -62,7 +66,7 @@ class WallGuard {
                   double particle_mass, Stopped& out) const;
 
     std::vector<GuardedSurface> surfaces_;
-    std::vector<DistanceBounds> bounds_;
+    std::vector<std::optional<DistanceBounds>> bounds_;
     double clearance_ = 0.0; ///< how far in front of a surface a stopped particle is put [m]
     std::vector<Stopped> chunks_;
 };

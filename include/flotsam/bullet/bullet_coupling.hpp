@@ -4,6 +4,7 @@
 
 #include <btBulletDynamicsCommon.h>
 
+#include <functional>
 #include <memory>
 
 namespace flotsam {
@@ -29,8 +30,14 @@ inline namespace bullet_single {
 /// Locked axes (linear and angular factors of 0) hold exactly. A body that the water touches stays awake; one that
 /// sleeps elsewhere is woken by the first impulse. In a FluidWorld of two dimensions bodies are locked to the plane.
 ///
-/// Contacts and constraints stay with Bullet's solver. The water answers a body as if it were free of them and finds
-/// out with the next step what they made of it.
+/// Joints (btTypedConstraint, limits and motors included) and contacts stand inside the pressure solve, those with
+/// bodies that the fluid does not know too: the water feels how bodies that hold on to each other answer together.
+/// Bullet's own solver then has the last word; StepReport::disagreement says how far it came out elsewhere. Bodies that
+/// the water does not touch move as Bullet alone moves them, bit for bit.
+///
+/// There are two ways to step:
+/// - step and step_for step both worlds;
+/// - attach lets the fluid ride on the application's own stepSimulation, whatever its sub-steps.
 class BulletCoupling {
   public:
     BulletCoupling(FluidWorld& fluid, btDynamicsWorld& world);
@@ -39,15 +46,23 @@ class BulletCoupling {
     BulletCoupling& operator=(const BulletCoupling&) = delete;
 
     /// Couples a body, which must be in the Bullet world; its surface is that of its collision shape. Returns the
-    /// body's number in the FluidWorld.
+    /// body's number in the FluidWorld. Between steps bodies may be added (water in their place is removed), removed,
+    /// put elsewhere (water in the new place goes to the old one) and reshaped; throws std::logic_error while a step
+    /// runs.
     ///
     /// Static and kinematic bodies move the water and get no response. A kinematic body goes on with the velocity that
     /// is set on it (setLinearVelocity, setAngularVelocity); or it goes within the next step to the pose that the
-    /// application gives it (setWorldTransform or its motion state) and then stands still.
+    /// application gives it (setWorldTransform or its motion state) and then stands still. With attach only the second
+    /// holds, as Bullet has it.
     int add(btRigidBody& body);
     /// The same with a surface of its own, closed, in the frame of the body's world transform (whose origin is the
     /// centre of mass).
     int add(btRigidBody& body, const TriangleMesh& surface);
+    /// To be called before the body is removed from the Bullet world. Its number is not used again.
+    void remove(btRigidBody& body);
+    /// Gives a coupled body another surface; its collision shape's, or its own.
+    void reshape(btRigidBody& body);
+    void reshape(btRigidBody& body, const TriangleMesh& surface);
 
     /// One step of both worlds: at most `dt` seconds, > 0, cut to what the fluid allows; returns what was done
     /// (report.dt). The Bullet world makes one step of the same length, stepSimulation(report.dt, 0).
@@ -55,10 +70,21 @@ class BulletCoupling {
     /// Steps until `seconds`, >= 0, have gone by; the last step ends exactly there.
     void step_for(double seconds);
 
+    /// From now on the fluid steps inside each internal step ("tick") of the world's stepSimulation, in as many steps
+    /// of its own as it needs. Takes the world's pre-tick callback and user info, and adds an action; an application
+    /// that has a pre-tick callback itself calls before_tick from it and after_tick from its tick callback instead.
+    /// `on_step` is told of each step of the fluid.
+    void attach(std::function<void(const StepReport&)> on_step = {});
+    void detach(); ///< done by the destructor too
+    void before_tick(double dt);
+    void after_tick();
+
     /// The port, for FluidWorld::prepare and for reading. Its apply adds forces for a Bullet step of the `dt` of its
     /// last read.
     [[nodiscard]] Bodies& bodies();
     [[nodiscard]] btRigidBody& body(int number) const;
+    /// Number of a body, -1 for one that is not coupled.
+    [[nodiscard]] int number_of(const btRigidBody& body) const;
 
   private:
     struct Impl;

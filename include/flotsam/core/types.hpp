@@ -57,6 +57,15 @@ struct Twist {
     [[nodiscard]] Vec3d at(const Vec3d& arm) const { return linear + angular.cross(arm); }
 };
 
+/// Where a body is that went on with a twist about its centre of mass for dt seconds.
+[[nodiscard]] inline Pose moved(const Pose& pose, const Twist& twist, double dt)
+{
+    const Vec3d turn = twist.angular * dt;
+    const double angle = turn.norm();
+    const Quatd rotation = angle > 0.0 ? Quatd(Eigen::AngleAxisd(angle, turn / angle)) : Quatd::Identity();
+    return {pose.position + dt * twist.linear, (rotation * pose.orientation).normalized()};
+}
+
 /// Force and torque, or their impulses, about a body's centre of mass (unless said otherwise), world frame.
 struct Wrench {
     Vec3d linear = Vec3d::Zero();  ///< [N] or [N s]

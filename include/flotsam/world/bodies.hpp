@@ -28,8 +28,19 @@ class Bodies {
     virtual void read(double dt, std::span<BodyState> states) = 0;
 
     /// Twist change that these impulses alone cause: linear, symmetric, positive semi-definite; zero for bodies that do
-    /// not respond. Must not change anything; called several times a step.
+    /// not respond. Bodies that joints or contacts hold together answer each other's. Must not change anything; called
+    /// several times a step.
     virtual void respond(std::span<const Wrench> impulses, std::span<Twist> twists) const = 0;
+
+    /// Answer of each body to impulses on itself, 6 x 6, linear part first. False: the fluid finds it by respond, which
+    /// takes six calls a body.
+    virtual bool own_mobility(std::span<Eigen::Matrix<double, 6, 6>>) const { return false; }
+
+    /// After a pressure solve: whether impulses, all that the fluid gives in this step so far, make joints or contacts
+    /// change between holding and yielding. If so, the states get new predictions (poses stay), respond answers by what
+    /// holds now, and the solve is to be repeated. Engines without constraints, or that keep them from the fluid, leave
+    /// it at false.
+    virtual bool revise(std::span<const Wrench>, std::span<BodyState>) { return false; }
 
     /// Hands the impulses of the step over for good.
     virtual void apply(std::span<const Wrench> impulses) = 0;

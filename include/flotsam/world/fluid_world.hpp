@@ -67,8 +67,13 @@ class FluidWorld {
     int add_wall(const TriangleMesh& mesh, WallSide side = WallSide::automatic);
     /// A box around water with some sides open ("+z", ...); returns its number.
     int add_box_wall(const Aabb& box, const std::vector<std::string>& open = {});
-    /// A body as a closed mesh about its centre of mass; returns its number, the one it has in the Bodies port.
+    /// A body as a closed mesh about its centre of mass; returns its number, the one it has in the Bodies port. Between
+    /// steps too: water in its place is removed.
     int add_body(const TriangleMesh& closed_about_center_of_mass);
+    /// Its number stays, for nobody; where it was, water flows in.
+    void remove_body(int body);
+    /// Another surface from now on; water in its place is removed.
+    void reshape_body(int body, const TriangleMesh& closed_about_center_of_mass);
     /// What notes call a wall or a body; else they say "wall 0", "body 0".
     void name_wall(int wall, const std::string& name);
     void name_body(int body, const std::string& name);

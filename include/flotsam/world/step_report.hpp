@@ -14,21 +14,26 @@ struct StageSeconds {
 /// What one FluidWorld::step did. Physics in trouble is counted here, never printed.
 struct StepReport {
     double dt = 0.0;               ///< [s]
-    int iterations = 0;            ///< of the velocity solve (published: of the one solve)
+    int iterations = 0;            ///< of the velocity solve (published: of the one solve), in all rounds
+    int rounds = 1;                ///< of that solve, until joints and contacts held and yielded as it had them
     int shift_iterations = 0;      ///< of the density solve of the split
     bool converged = true;         ///< every solve reached its tolerance
+    double disagreement = 0.0;     ///< velocity that the engine gave a body beside what the fluid believed in [m/s];
+                                   ///< riding on an application's ticks: of the tick before
     double residual = 0.0;         ///< of the returned step: mean / rest density [-]
     double compression_mean = 0.0; ///< mean over the fluid of max(0, rho/rho0 - 1)
     double compression_max = 0.0;
-    int leaks_stopped = 0;                 ///< particles that the wall guard put back in this step
-    int leaked = 0;                        ///< particles that are outside all the same
-    double max_speed = 0.0;                ///< of the fluid [m/s]
-    Vec3d fluid_momentum = Vec3d::Zero();  ///< after the step [kg m/s]
-    Vec3d gravity_impulse = Vec3d::Zero(); ///< given to the fluid by gravity in this step [N s]
-    Vec3d wall_impulse = Vec3d::Zero();    ///< given to all walls by the fluid (pressure, viscosity, guard) [N s]
-    Vec3d body_impulse = Vec3d::Zero();    ///< given to all bodies by the fluid [N s]
-    Vec3d guard_impulse = Vec3d::Zero();   ///< the guard's part of wall_impulse + body_impulse [N s]
-    Ledger ledger;                         ///< of this step: the same and more, by cause
+    int leaks_stopped = 0;     ///< particles that the wall guard put back in this step
+    int leaked = 0;            ///< particles that are outside all the same
+    int removed_particles = 0; ///< by bodies that were added, reshaped or put in their place before the step
+    Vec3d removed_momentum = Vec3d::Zero(); ///< theirs [kg m/s]
+    double max_speed = 0.0;                 ///< of the fluid [m/s]
+    Vec3d fluid_momentum = Vec3d::Zero();   ///< after the step [kg m/s]
+    Vec3d gravity_impulse = Vec3d::Zero();  ///< given to the fluid by gravity in this step [N s]
+    Vec3d wall_impulse = Vec3d::Zero();     ///< given to all walls by the fluid (pressure, viscosity, guard) [N s]
+    Vec3d body_impulse = Vec3d::Zero();     ///< given to all bodies by the fluid [N s]
+    Vec3d guard_impulse = Vec3d::Zero();    ///< the guard's part of wall_impulse + body_impulse [N s]
+    Ledger ledger;                          ///< of this step: the same and more, by cause
     StageSeconds seconds;
 };
 
