@@ -82,6 +82,7 @@ void BulletBodies::begin(double seconds, bool in_tick)
 {
     require(seconds > 0.0 && std::isfinite(seconds), "a step must be > 0 s and finite", seconds);
     seconds_ = seconds;
+    is_in_tick_ = in_tick;
     elapsed_ = 0.0;
     is_single_ = false;
     motion_.clear();
@@ -177,7 +178,7 @@ void BulletBodies::read(double dt, std::span<BodyState> states)
         motion_.scale_bounds(part);
     }
     guess_impulses(dt);
-    motion_.solve(impulses_);
+    motion_.solve(impulses_, 0.1 * revision_tolerance());
     for (std::size_t k = 0; k < bodies_.size(); ++k)
         states[k] = {bodies_[k].pose, motion_.predicted()[k], bodies_[k].is_dynamic, bodies_[k].twist};
 }
@@ -204,14 +205,18 @@ bool BulletBodies::own_mobility(std::span<Mat6d> blocks) const
     return true;
 }
 
+/// What a contact may be wrong by without anybody seeing it, of the velocity that gravity gives in a step [m/s].
+double BulletBodies::revision_tolerance() const
+{
+    return 1e-2 * std::max(1e-3, static_cast<double>(world_.getGravity().length())) * dt_;
+}
+
 bool BulletBodies::revise(std::span<const Wrench> impulses, std::span<BodyState> states)
 {
-    // Of the velocity that gravity gives in a step: what a contact may be wrong by without anybody seeing it.
-    const double tolerance = 1e-3 * std::max(1e-3, static_cast<double>(world_.getGravity().length())) * dt_;
     std::copy(impulses.begin(), impulses.end(), impulses_.begin());
     std::fill(impulses_.begin() + static_cast<std::ptrdiff_t>(bodies_.size()), impulses_.end(), Wrench{});
-    if (motion_.holds(impulses_, tolerance)) return false;
-    motion_.solve(impulses_);
+    if (motion_.holds(impulses_, revision_tolerance())) return false;
+    motion_.solve(impulses_, 0.1 * revision_tolerance());
     for (std::size_t k = 0; k < bodies_.size(); ++k) states[k].predicted = motion_.predicted()[k];
     return true;
 }
@@ -221,6 +226,8 @@ void BulletBodies::apply(std::span<const Wrench> impulses)
     require(is_open() || bodies_.empty(), "apply needs a read before it");
     require(impulses.size() == bodies_.size(), "apply needs one impulse per body", impulses.size());
     std::copy(impulses.begin(), impulses.end(), impulses_.begin());
+    std::fill(impulses_.begin() + static_cast<std::ptrdiff_t>(bodies_.size()), impulses_.end(), Wrench{});
+    if (!motion_.holds(impulses_, revision_tolerance())) motion_.solve(impulses_, 0.1 * revision_tolerance());
     motion_.respond(impulses_, answers_);
     for (std::size_t k = 0; k < motion_.bodies(); ++k) twists_[k] = sum(motion_.predicted()[k], answers_[k]);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -244,14 +251,38 @@ void BulletBodies::finish()
         btRigidBody& body = *coupled.body;
         body.activate(true);
         const Twist aided = sum(coupled.end, coupled.mobility * given);
-        const Mat3d axes = from_bullet(body.getWorldTransform().getBasis());
-        const Vec3d inertia = from_bullet(body.getLocalInertia()); // 0 where the body never turns
         coupled.force = static_cast<double>(body.getMass()) / seconds_ * (aided.linear - coupled.unaided.linear);
-        coupled.torque =
-            axes * inertia.asDiagonal() * axes.transpose() * (aided.angular - coupled.unaided.angular) / seconds_;
+        if (!turn(coupled, aided.angular)) {
+            const Mat3d axes = from_bullet(body.getWorldTransform().getBasis());
+            const Vec3d inertia = from_bullet(body.getLocalInertia()); // 0 where the body never turns
+            coupled.torque =
+                axes * inertia.asDiagonal() * axes.transpose() * (aided.angular - coupled.unaided.angular) / seconds_;
+        }
         add_forces(body, coupled.force, coupled.torque);
     }
     seconds_ = 0.0;
+}
+
+/// Gives the body the angular velocity from which Bullet's step takes it to `end`. A torque would do the same, but
+/// Bullet 3.24's friction rows leave torques out (setupFrictionConstraint), and what lies on something would creep by
+/// what they turn it. False: damping is too strong, or not linear, for that.
+bool BulletBodies::turn(const Coupled& coupled, const Vec3d& end) const
+{
+    constexpr int kSteps = 8; // gyroscopic terms make it slightly nonlinear
+    btRigidBody& body = *coupled.body;
+    const double kept = std::pow(1.0 - static_cast<double>(body.getAngularDamping()), seconds_);
+    if (!(kept > 0.1)) return false;
+    const btVector3 before = body.getAngularVelocity();
+    for (int k = 0; k < kSteps; ++k) {
+        const FreeMotion motion = free_motion(body, seconds_, world_.getSolverInfo().m_maxGyroscopicForce, is_in_tick_);
+        const Vec3d missing = end - motion.end.angular;
+        if (!(missing.norm() > 1e-15 * (1.0 + end.norm()))) break;
+        body.setAngularVelocity(body.getAngularVelocity() + to_bullet(missing / kept));
+    }
+    const FreeMotion motion = free_motion(body, seconds_, world_.getSolverInfo().m_maxGyroscopicForce, is_in_tick_);
+    if ((end - motion.end.angular).norm() <= 1e-6 * (1.0 + end.norm())) return true;
+    body.setAngularVelocity(before);
+    return false;
 }
 
 void BulletBodies::take_back_forces()

@@ -76,9 +76,11 @@ class BulletBodies final : public Bodies {
     };
     void begin_body(Coupled& coupled, double seconds, bool in_tick);
     void begin_dynamic(Coupled& coupled, double seconds, bool in_tick);
+    [[nodiscard]] bool turn(const Coupled& coupled, const Vec3d& end) const;
     void collect_rows(bool in_tick);
     int add_uncoupled(btRigidBody& body, bool in_tick);
     void guess_impulses(double dt);
+    [[nodiscard]] double revision_tolerance() const;
     [[nodiscard]] bool is_open() const { return seconds_ > 0.0; }
 
     btDynamicsWorld& world_;
@@ -92,6 +94,7 @@ class BulletBodies final : public Bodies {
     std::vector<Twist> twists_;                          ///< of the same, at the end of the last fluid step
     double seconds_ = 0.0;                               ///< of the Bullet step under way; 0: none
     double elapsed_ = 0.0, dt_ = 0.0;
+    bool is_in_tick_ = false;
     bool is_single_ = false; ///< the Bullet step is one fluid step, begun by read
 };
 

@@ -8,8 +8,12 @@
 namespace flotsam {
 namespace {
 
-/// Of a row's own term. Contacts of a box have twelve rows for six freedoms: any impulses that do the same will do.
-constexpr double kRegularisation = 1e-8;
+/// Of a row's own term, in the matrix that is factorised. Four contacts under a box have one normal too many, and
+/// targets that differ by rounding: without it they would fight each other with any impulse.
+constexpr double kRegularisation = 1e-3;
+/// Solutions with it, each with the rest of the one before: what the rows agree on comes out to 1e-9, what they
+/// contradict each other in stays small.
+constexpr int kRefinements = 3;
 
 Vec6d stacked(const Wrench& wrench)
 {
@@ -109,15 +113,21 @@ void ConstrainedMotion::add_part(std::size_t row, int body, const Vec6d& jacobia
     Eigen::Map<Vec6d>(pool_.data() + at) += jacobian;
 }
 
+double ConstrainedMotion::normal_impulse(const ConstraintRow& row) const
+{
+    double sum = 0.0;
+    for (int k = 0; k < row.normals; ++k) sum += rows_[static_cast<std::size_t>(row.normal + k)].impulse;
+    return std::max(0.0, sum);
+}
+
 double ConstrainedMotion::lower(const ConstraintRow& row) const
 {
-    if (row.normal < 0) return bound_scale_ * row.lower;
-    return -row.friction * std::max(0.0, rows_[static_cast<std::size_t>(row.normal)].impulse);
+    return row.normal < 0 ? bound_scale_ * row.lower : -row.friction * normal_impulse(row);
 }
 
 double ConstrainedMotion::upper(const ConstraintRow& row) const
 {
-    return row.normal < 0 ? bound_scale_ * row.upper : -lower(row);
+    return row.normal < 0 ? bound_scale_ * row.upper : row.friction * normal_impulse(row);
 }
 
 double ConstrainedMotion::rate(std::size_t row, const Vector& v) const
@@ -158,44 +168,51 @@ void ConstrainedMotion::free_velocity(Vector& v) const
     for (std::size_t k = 0; k < free_.size(); ++k) v.segment<6>(static_cast<Eigen::Index>(6 * k)) = stacked(free_[k]);
 }
 
-bool ConstrainedMotion::solve(std::span<const Wrench> impulses)
+bool ConstrainedMotion::solve(std::span<const Wrench> impulses, double tolerance)
 {
-    constexpr int kRounds = 12, kSweeps = 30;
+    constexpr int kRounds = 12, kSweeps = 40;
     bool is_right = true;
     if (!rows_.empty()) {
         held_index_.assign(rows_.size(), -1);
         is_right = false;
         for (int round = 0; round < kRounds && !is_right; ++round) {
-            free_velocity(velocity_);
-            add_answers(impulses, velocity_);
-            for (std::size_t k = 0; k < rows_.size(); ++k) {
-                ConstraintRow& row = rows_[k];
-                row.impulse = std::clamp(row.impulse, lower(row), upper(row));
-                if (row.impulse != 0.0) push(k, row.impulse, velocity_);
-            }
-            sweep(velocity_, kSweeps);
+            clamp_impulses(impulses, velocity_);
+            for (int k = 0; k < kSweeps; ++k) sweep(velocity_);
             choose_held();
             factorize();
-            is_right = holds(impulses, 1e-9 + 1e-6 * velocity_.cwiseAbs().maxCoeff());
+            is_right = holds(impulses, tolerance);
         }
     }
     predict();
     return is_right;
 }
 
-void ConstrainedMotion::sweep(Vector& v, int sweeps)
+/// Puts the rows' impulses into their bounds, and sets v to the velocities with them.
+void ConstrainedMotion::clamp_impulses(std::span<const Wrench> impulses, Vector& v)
 {
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
-        for (std::size_t k = 0; k < rows_.size(); ++k) {
-            ConstraintRow& row = rows_[k];
-            if (!(own_[k] + row.cfm > 0.0)) continue;
-            const double rest = row.target - rate(k, v) - row.cfm * row.impulse;
-            const double next =
-                std::clamp(row.impulse + rest / (own_[k] * (1.0 + kRegularisation) + row.cfm), lower(row), upper(row));
-            if (next != row.impulse) push(k, next - row.impulse, v);
-            row.impulse = next;
-        }
+    free_velocity(v);
+    add_answers(impulses, v);
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+        ConstraintRow& row = rows_[k];
+        row.impulse = std::clamp(row.impulse, lower(row), upper(row));
+        if (row.impulse != 0.0) push(k, row.impulse, v);
     }
+}
+
+/// One of projected Gauss-Seidel; returns the largest change of a row's rate.
+double ConstrainedMotion::sweep(Vector& v)
+{
+    double largest = 0.0;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+        ConstraintRow& row = rows_[k];
+        if (!(own_[k] + row.cfm > 0.0)) continue;
+        const double rest = row.target - rate(k, v) - row.cfm * row.impulse;
+        const double next = std::clamp(row.impulse + rest / (own_[k] + row.cfm), lower(row), upper(row));
+        if (next != row.impulse) push(k, next - row.impulse, v);
+        largest = std::max(largest, own_[k] * std::abs(next - row.impulse));
+        row.impulse = next;
+    }
+    return largest;
 }
 
 void ConstrainedMotion::choose_held()
@@ -242,12 +259,28 @@ void ConstrainedMotion::solve_held(Vector& v)
     rest_.resize(static_cast<Eigen::Index>(held_.size()));
     for (std::size_t h = 0; h < held_.size(); ++h)
         rest_[static_cast<Eigen::Index>(h)] = rows_[held_[h]].target - rate(held_[h], v);
-    impulse_ = factor_.solve(rest_);
+    impulse_ = held_impulses(rest_);
     for (std::size_t h = 0; h < held_.size(); ++h) push(held_[h], impulse_[static_cast<Eigen::Index>(h)], v);
+}
+
+/// (J Y J^T + cfm)^-1 rest of the rows that hold, for one or several columns; symmetric.
+template <class Columns>
+Columns ConstrainedMotion::held_impulses(const Columns& rest) const
+{
+    Columns found = factor_.solve(rest);
+    for (int k = 1; k < kRefinements; ++k) {
+        Columns more = rest;
+        for (std::size_t h = 0; h < held_.size(); ++h)
+            more.row(static_cast<Eigen::Index>(h)) +=
+                kRegularisation * own_[held_[h]] * found.row(static_cast<Eigen::Index>(h));
+        found = factor_.solve(more);
+    }
+    return found;
 }
 
 bool ConstrainedMotion::holds(std::span<const Wrench> impulses, double tolerance)
 {
+    constexpr int kSweeps = 20;
     if (rows_.empty()) return true;
     free_velocity(velocity_);
     add_answers(impulses, velocity_);
@@ -255,20 +288,25 @@ bool ConstrainedMotion::holds(std::span<const Wrench> impulses, double tolerance
         if (!is_held(k) && rows_[k].impulse != 0.0) push(k, rows_[k].impulse, velocity_);
     if (!held_.empty()) solve_held(velocity_);
     for (std::size_t h = 0; h < held_.size(); ++h) rows_[held_[h]].impulse = impulse_[static_cast<Eigen::Index>(h)];
-    bool is_right = true;
-    for (std::size_t k = 0; k < rows_.size() && is_right; ++k) {
+    if (is_complementary(velocity_, tolerance)) return true;
+    // Other impulses may do the same within the bounds.
+    clamp_impulses(impulses, swept_);
+    for (int k = 0; k < kSweeps; ++k)
+        if (sweep(swept_) < 0.1 * tolerance) break;
+    return (swept_ - velocity_).cwiseAbs().maxCoeff() <= tolerance;
+}
+
+/// Whether the impulses are within their bounds and the rows at a bound would stay there.
+bool ConstrainedMotion::is_complementary(const Vector& v, double tolerance) const
+{
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
         const ConstraintRow& row = rows_[k];
-        if (is_held(k)) {
-            const double over = std::max(row.impulse - upper(row), lower(row) - row.impulse);
-            is_right = !(over * own_[k] > tolerance);
-        } else if (own_[k] + row.cfm > 0.0) {
-            // at a bound: where it would have to be left, or where the bound itself has moved (friction)
-            const double rest = row.target - rate(k, velocity_) - row.cfm * row.impulse;
-            const double better = std::clamp(row.impulse + rest / (own_[k] + row.cfm), lower(row), upper(row));
-            is_right = !(std::abs(better - row.impulse) * own_[k] > tolerance);
-        }
+        if (!(own_[k] + row.cfm > 0.0)) continue;
+        const double rest = is_held(k) ? 0.0 : row.target - rate(k, v) - row.cfm * row.impulse;
+        const double better = std::clamp(row.impulse + rest / (own_[k] + row.cfm), lower(row), upper(row));
+        if (std::abs(better - row.impulse) * own_[k] > tolerance) return false;
     }
-    return is_right;
+    return true;
 }
 
 void ConstrainedMotion::predict()
@@ -289,7 +327,7 @@ void ConstrainedMotion::respond(std::span<const Wrench> impulses, std::span<Twis
     if (!held_.empty()) {
         rest_.resize(static_cast<Eigen::Index>(held_.size()));
         for (std::size_t h = 0; h < held_.size(); ++h) rest_[static_cast<Eigen::Index>(h)] = -rate(held_[h], velocity_);
-        impulse_ = factor_.solve(rest_);
+        impulse_ = held_impulses(rest_);
         for (std::size_t h = 0; h < held_.size(); ++h)
             push(held_[h], impulse_[static_cast<Eigen::Index>(h)], velocity_);
     }
@@ -315,7 +353,7 @@ Mat6d ConstrainedMotion::own_mobility(std::size_t body) const
         answers.row(h) = of(parts_[p].answer, group).segment<6>(at).transpose();
     }
     if (!any) return own;
-    own -= answers.transpose() * factor_.solve(answers);
+    own -= answers.transpose() * held_impulses(answers);
     return 0.5 * (own + own.transpose());
 }
 

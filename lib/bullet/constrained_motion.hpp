@@ -24,8 +24,9 @@ struct ConstraintRow {
     double relative_cfm = 0.0; ///< compliance to be added, as part of J Y J^T
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
-    int normal = -1;       ///< of a friction row: the row of its contact, whose impulse bounds this one's
-    double friction = 0.0; ///< coefficient: |lambda| <= friction lambda_normal
+    int normal = -1;       ///< of a friction row: the first row of its contact, whose impulses bound this one's
+    int normals = 0;       ///< and how many there are
+    double friction = 0.0; ///< coefficient: |lambda| <= friction * sum of the contact's impulses
     double impulse = 0.0;  ///< a guess; then the answer [N s] or [N m s]
 };
 
@@ -43,7 +44,7 @@ struct ConstraintRow {
 /// the right one under other impulses; solving again when it is not makes the two a semi-smooth Newton iteration.
 /// **Source:** for the piecewise linear problem: Stewart & Trinkle 1996 (contacts as a complementarity problem on
 /// velocities); for its solution: projected Gauss-Seidel to find the set, then Hintermueller, Ito & Kunisch 2002
-/// (primal-dual active sets). **Differs:** friction is a pyramid whose bound is that of the last solve.
+/// (primal-dual active sets). **Differs:** friction is a pyramid.
 class ConstrainedMotion {
   public:
     void clear();
@@ -63,11 +64,12 @@ class ConstrainedMotion {
     /// Scales the bounds of the rows' impulses from then on: to a part of the step they are for.
     void scale_bounds(double factor) { bound_scale_ = factor; }
 
-    /// Finds which rows hold under `impulses` (one per body). False: not within its bound of iterations, so that the
-    /// set is an approximation.
-    bool solve(std::span<const Wrench> impulses);
+    /// Finds which rows hold under `impulses` (one per body), as far as velocities show it to `tolerance` [m/s]. False:
+    /// not within its bound of iterations, so that the set is an approximation.
+    bool solve(std::span<const Wrench> impulses, double tolerance);
     /// Whether the rows that hold under `impulses` are those of the last solve, as far as velocities show it to
-    /// `tolerance` [m/s].
+    /// `tolerance`: different impulses in the rows do not count if the bodies move alike, since four contacts
+    /// under one box can share its weight in many ways.
     [[nodiscard]] bool holds(std::span<const Wrench> impulses, double tolerance);
 
     /// The affine part: twists without impulses, as the rows that hold would have them.
@@ -104,10 +106,15 @@ class ConstrainedMotion {
     void push(std::size_t row, double impulse, Vector& v) const;       ///< v += Y J^T impulse
     void add_answers(std::span<const Wrench> impulses, Vector& v) const;
     void free_velocity(Vector& v) const;
-    void sweep(Vector& v, int sweeps);
+    [[nodiscard]] double normal_impulse(const ConstraintRow& row) const;
+    void clamp_impulses(std::span<const Wrench> impulses, Vector& v);
+    double sweep(Vector& v);
+    [[nodiscard]] bool is_complementary(const Vector& v, double tolerance) const;
     void choose_held();
     void factorize();
     void solve_held(Vector& v);
+    template <class Columns>
+    [[nodiscard]] Columns held_impulses(const Columns& rest) const;
     void predict();
 
     std::vector<Twist> free_, predicted_;
@@ -124,6 +131,7 @@ class ConstrainedMotion {
     std::vector<Eigen::Triplet<double>> entries_;
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
     mutable Vector velocity_, rest_, impulse_;
+    Vector swept_;
     double bound_scale_ = 1.0;
 };
 

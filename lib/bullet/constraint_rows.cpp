@@ -5,6 +5,7 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -81,40 +82,69 @@ ConstraintRow normal_row(const Contact& contact, const btManifoldPoint& point, c
     return row;
 }
 
-void add_contact(const btManifoldPoint& point, const btContactSolverInfo& info, double dt, const Contact& contact,
-                 ConstrainedMotion& motion)
+/// Two rows along the surface and, for a patch that has a size, one about its normal.
+void add_friction(const Contact& middle, double friction, double radius, int first, int count,
+                  ConstrainedMotion& motion)
 {
-    const int normal = motion.add_row(normal_row(contact, point, info, dt));
-    const auto friction = static_cast<double>(point.m_combinedFriction);
-    if (!(friction > 0.0)) return;
-    const Vec3d first = contact.normal.unitOrthogonal(), second = contact.normal.cross(first);
-    for (const Vec3d& direction : {first, second}) {
-        ConstraintRow row = contact.row(direction);
-        row.normal = normal;
+    const Vec3d along = middle.normal.unitOrthogonal(), across = middle.normal.cross(along);
+    for (const Vec3d& direction : {along, across}) {
+        ConstraintRow row = middle.row(direction);
+        row.normal = first;
+        row.normals = count;
         row.friction = friction;
         motion.add_row(row);
     }
+    if (!(radius > 0.0)) return;
+    ConstraintRow spin;
+    spin.a = middle.a;
+    spin.b = middle.b;
+    spin.J_a = six(Vec3d::Zero(), middle.normal);
+    spin.J_b = -spin.J_a;
+    spin.normal = first;
+    spin.normals = count;
+    spin.friction = friction * radius;
+    motion.add_row(spin);
 }
 
+/// Of the points of one manifold: one for each normal, and friction of the whole patch about its middle.
 void add_contacts(const btPersistentManifold& manifold, const btContactSolverInfo& info, double dt,
                   const MotionNumbers& numbers, ConstrainedMotion& motion)
 {
     const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
     const btTransform &pose_a = a.getWorldTransform(), &pose_b = b.getWorldTransform();
+    Contact middle{numbers.of(a), numbers.of(b), Vec3d::Zero(), Vec3d::Zero(), Vec3d::Zero(), 0.0, Vec3d::Zero()};
+    int first = -1, count = 0;
+    double weights = 0.0, friction = 0.0;
+    std::array<Vec3d, MANIFOLD_CACHE_SIZE> arms;
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
         const btManifoldPoint& point = manifold.getContactPoint(k);
         const btVector3 on_a = pose_a * point.m_localPointA, on_b = pose_b * point.m_localPointB;
-        Contact contact;
-        contact.a = numbers.of(a);
-        contact.b = numbers.of(b);
+        Contact contact = middle;
         contact.arm_a = from_bullet(on_a - pose_a.getOrigin());
         contact.arm_b = from_bullet(on_b - pose_b.getOrigin());
         contact.normal = from_bullet(point.m_normalWorldOnB);
         contact.distance = from_bullet(on_a - on_b).dot(contact.normal);
         if (contact.distance > static_cast<double>(manifold.getContactBreakingThreshold())) continue;
         contact.approach = velocity_at(a, contact.arm_a) - velocity_at(b, contact.arm_b);
-        add_contact(point, info, dt, contact, motion);
+        const int row = motion.add_row(normal_row(contact, point, info, dt));
+        if (first < 0) first = row;
+        arms[static_cast<std::size_t>(count++)] = contact.arm_a;
+        // What bears most of the load has most of the friction.
+        const double weight = 1e-9 + std::max(0.0, static_cast<double>(point.m_appliedImpulse));
+        weights += weight;
+        middle.arm_a += weight * contact.arm_a;
+        middle.arm_b += weight * contact.arm_b;
+        middle.normal += weight * contact.normal;
+        friction += weight * static_cast<double>(point.m_combinedFriction);
     }
+    if (count == 0 || !(friction > 0.0) || !(middle.normal.norm() > 0.0)) return;
+    middle.arm_a /= weights;
+    middle.arm_b /= weights;
+    middle.normal.normalize();
+    double radius = 0.0;
+    for (int k = 0; k < count; ++k)
+        radius += (arms[static_cast<std::size_t>(k)] - middle.arm_a).cross(middle.normal).norm() / count;
+    add_friction(middle, friction / weights, radius, first, count, motion);
 }
 
 } // namespace

@@ -31,8 +31,9 @@ class MotionNumbers {
 /// it is: its rows come from getInfo2, as btSequentialImpulseConstraintSolver gets them) and contacts.
 ///
 /// Contacts are those of the last collision detection, with distances of now. A contact's rows are its normal,
-/// J v >= -distance / dt (restitution and error reduction as in the solver), and two of friction. **Differs** from
-/// Bullet, whose contacts have one row of friction by default; rolling friction is left out.
+/// J v >= -distance / dt (restitution and error reduction as in the solver). **Differs** from Bullet in friction: two
+/// rows along the surface and one about the normal for all points of a manifold together, where Bullet has one or two
+/// for each; they hold and slide alike, with fewer ways to share the load. Rolling friction is left out.
 class ConstraintCollector {
   public:
     /// Adds to `motion` the dynamic bodies, by `add_body(btRigidBody&) -> number`, that hang together with responding

@@ -99,7 +99,9 @@ bool FluidWorld::Impl::in_body(std::size_t k, const Pose& pose, const Vec3d& poi
 {
     if (!bodies[k].query) return false; // removed
     const Vec3d local = pose.to_body(point);
-    return bodies[k].query->bounds().contains(local) && bodies[k].query->inside(local);
+    const SurfaceQuery& query = *bodies[k].query;
+    // A point on the surface is outside, whatever rounding says: a lattice in line with the faces stays symmetric.
+    return query.bounds().contains(local) && query.inside(local) && query.signed_distance(local) < -1e-3 * spacing();
 }
 
 void FluidWorld::Impl::cut_and_place_fluid()

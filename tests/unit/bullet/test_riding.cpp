@@ -168,7 +168,7 @@ TEST_CASE("bodies are added, removed, put elsewhere and reshaped while the water
     CHECK_THROWS_AS(water.fluid_wrench(7), std::invalid_argument);
     CHECK_THROWS_AS(coupling.remove(second), std::invalid_argument);
     coupling.step_for(0.1);
-    CHECK(height(first) > 0.2); // and floats
+    CHECK(height(first) > 0.2);        // and floats
     scene.world.addRigidBody(&second); // the scene takes it out again
 }
 
