@@ -85,6 +85,7 @@ struct FluidWorld::Impl {
     CellLists fluid_cells, boundary_cells;
     NeighbourSearch search, boundary_search;
     Pairs fluid_pairs, boundary_pairs;
+    std::size_t paired_samples = 0; ///< boundary samples that there were when boundary_pairs was found
     ContactBuilder contact_builder;
     Contacts contacts;
     Viscosity viscosity;
@@ -129,7 +130,8 @@ struct FluidWorld::Impl {
     [[nodiscard]] bool touches_body(std::span<const BodyState> at, const Vec3d& point, double away) const;
 
     // forces_on_bodies.cpp, surface_pressure.cpp
-    [[nodiscard]] bool is_pushed(std::size_t owner) const;
+    [[nodiscard]] bool is_touched(std::size_t owner) const;
+    [[nodiscard]] bool has_pushes(std::size_t owner) const;
     [[nodiscard]] ByCause<Wrench> wrenches(std::size_t owner) const;
     [[nodiscard]] Wrench hydrostatic(std::size_t body, std::optional<double> level) const;
     template <class Visit>
@@ -190,7 +192,7 @@ struct FluidWorld::Impl {
 };
 
 /// Calls visit(i, b, force) for the pressure force [N] of each particle i on each sample b of an owner in the last
-/// step, i rising: the terms that Contacts has summed up, m p_i / rho_i^2 rho0 V_b grad W_ib.
+/// step, i rising; has_pushes must hold: the terms that Contacts has summed up, m p_i / rho_i^2 rho0 V_b grad W_ib.
 template <class Visit>
 void FluidWorld::Impl::visit_pushes(std::size_t owner, Visit&& visit) const
 {

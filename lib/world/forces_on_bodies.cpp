@@ -21,23 +21,30 @@ double above(const TriangleMesh& mesh, const Pose& pose)
 } // namespace
 
 /// Whether water touched this owner in the last step.
-bool FluidWorld::Impl::is_pushed(std::size_t owner) const
+bool FluidWorld::Impl::is_touched(std::size_t owner) const
 {
     return last_dt > 0.0 && owner < contacts.owners() && contacts.start[owner] < contacts.start[owner + 1];
+}
+
+/// Whether that step's pushes can still be read: not once a body was removed, until the next step.
+bool FluidWorld::Impl::has_pushes(std::size_t owner) const
+{
+    return is_touched(owner) && paired_samples == boundary.size();
 }
 
 /// Of the last step, about the owner's centre: of a body that of its mass, of a wall the world's origin.
 ByCause<Wrench> FluidWorld::Impl::wrenches(std::size_t owner) const
 {
-    if (!(last_dt > 0.0) || owner >= guarded.size()) return {};
+    const bool is_removed = owner >= walls.size() && bodies[owner - walls.size()].mesh.empty();
+    if (!(last_dt > 0.0) || owner >= guarded.size() || is_removed) return {};
     const double rate = 1.0 / last_dt;
     return {pushed[owner] * rate, rubbed[owner] * rate, guarded[owner] * rate};
 }
 
 Wrench FluidWorld::Impl::hydrostatic(std::size_t body, std::optional<double> level) const
 {
-    if (!is_pushed(walls.size() + body) || settings.gravity.isZero(0.0)) return {};
     const TriangleMesh& mesh = bodies[body].mesh;
+    if (mesh.empty() || !is_touched(walls.size() + body) || settings.gravity.isZero(0.0)) return {};
     const Pose& pose = states[body].pose;
     const double height = level ? *level : above(mesh, pose);
     const Submerged part =
@@ -51,7 +58,7 @@ FluidForces FluidWorld::fluid_forces(int body) const
     require(body >= 0 && body < body_count(), "no body has this number", body);
     const std::size_t k = static_cast<std::size_t>(body);
     const ByCause<Wrench> by_cause = impl_->wrenches(impl_->walls.size() + k);
-    const bool has_level = is_level(impl_->settings.gravity) && impl_->is_pushed(impl_->walls.size() + k);
+    const bool has_level = is_level(impl_->settings.gravity) && impl_->is_touched(impl_->walls.size() + k);
     FluidForces forces;
     forces.hydrostatic = impl_->hydrostatic(k, has_level ? waterline(impl_->states) : std::nullopt);
     forces.dynamic = by_cause.pressure - forces.hydrostatic;
@@ -90,7 +97,7 @@ std::vector<SampleForce> FluidWorld::sample_forces(int body) const
         place[b] = samples.size();
         samples.push_back({world.boundary.position[b].head<3>().cast<double>(), Vec3d::Zero()});
     }
-    if (!world.is_pushed(static_cast<std::size_t>(owner))) return samples;
+    if (!world.has_pushes(static_cast<std::size_t>(owner))) return samples;
     world.visit_pushes(static_cast<std::size_t>(owner),
                        [&](std::uint32_t, std::uint32_t b, const Vec3d& force) { samples[place[b]].force += force; });
     return samples;

@@ -102,6 +102,7 @@ void FluidWorld::Impl::find_neighbours()
     fluid_cells.build(grid, fluid.position, workers);
     sort_particles();
     boundary_cells.build(grid, boundary.position, workers);
+    paired_samples = boundary.size();
     kernel.visit([&](const auto& spline) {
         search.find(spline, grid, fluid_cells, fluid.position, fluid.position, true, workers, fluid_pairs);
         boundary_search.find(spline, grid, boundary_cells, fluid.position, boundary.position, false, workers,

@@ -121,7 +121,7 @@ std::vector<double> FluidWorld::surface_pressure(int body) const
     const Impl& world = *impl_;
     const std::size_t k = static_cast<std::size_t>(body), owner = world.walls.size() + k;
     const TriangleMesh& mesh = world.bodies[k].mesh;
-    if (!world.is_pushed(owner)) return std::vector<double>(mesh.triangles.size(), 0.0);
+    if (!world.has_pushes(owner)) return std::vector<double>(mesh.triangles.size(), 0.0);
     const int dimensions = world.settings.dimensions;
     PressureSpread spread(mesh, 0.7 * world.spacing(), 2.5 * world.spacing(), dimensions);
     const Quatd to_body = world.states[k].pose.orientation.conjugate();

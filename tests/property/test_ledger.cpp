@@ -167,6 +167,33 @@ TEST_CASE("the ledger of a body and water alone closes", "[ledger][property]")
     CHECK(energy(box) - before == Approx(ledger.energy.bodies.total()).epsilon(1e-9));
 }
 
+TEST_CASE("water that makes room for a body is written down", "[ledger][property]")
+{
+    FluidWorld world(settings_of(2));
+    world.add_box_wall({Vec3d(0, 0, 0), Vec3d(0.4, 0.1, 0.6)}, {"+z"});
+    world.add_block({Vec3d(0, 0, 0), Vec3d(0.4, 0.1, 0.3)}, Vec3d(0.3, 0, 0));
+    NoBodies none;
+    for (int k = 0; k < 20; ++k) world.step(0.002, none);
+    const FluidTotals before = totals(world);
+    const Vec3d edges(0.1, 1.0, 0.1);
+    world.add_body(tessellate(BoxShape{edges}, 0.02));
+    FreeBodies bodies({free_box(edges, 500.0, Vec3d(0.2, 0, 0.1))}, world.settings().gravity);
+    const StepReport report = world.step(0.002, bodies);
+    REQUIRE(report.removed_particles > 0);
+    const FluidTotals removed = world.ledger().removed;
+    CHECK(removed.volume == Approx(report.removed_particles * 0.02 * 0.02).epsilon(1e-9));
+    CHECK((removed.momentum - report.removed_momentum).norm() < 1e-9 * before.momentum.norm());
+    CHECK(removed.potential > 0.0);
+    CHECK(report.ledger.start.volume == Approx(before.volume - removed.volume).epsilon(1e-12));
+    for (int k = 0; k < 20; ++k) world.step(0.002, bodies);
+    const LedgerErrors errors = world.ledger().errors();
+    const LedgerScales scales = world.ledger().scales();
+    CHECK(errors.momentum.norm() < kTolerance * scales.momentum);
+    CHECK(errors.angular_momentum.norm() < kTolerance * scales.angular_momentum);
+    CHECK(std::abs(errors.energy) < kTolerance * scales.energy);
+    CHECK(std::abs(errors.volume) < 1e-12 * before.volume);
+}
+
 TEST_CASE("pressure does no net work on a still tank", "[ledger][property]")
 {
     const int dimensions = GENERATE(2, 3);

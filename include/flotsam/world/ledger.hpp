@@ -61,7 +61,9 @@ struct LedgerScales {
 struct Ledger {
     double seconds = 0.0;
     FluidTotals start, end;
-    FluidTotals removed;           ///< what left between steps, with particles taken out (put in: negative)
+    /// What went before a step or between steps, with particles that bodies took the room of; put in: negative. Water
+    /// that was moved aside is in it too, by what its place is worth.
+    FluidTotals removed;
     Wrench gravity;                ///< impulse given to the fluid, and its moment about the origin
     ByCause<Wrench> walls, bodies; ///< impulses given by the fluid, moments about the origin
     Vec3d shift = Vec3d::Zero();   ///< angular momentum gained by the position shift: sum of m shift x v [N m s]
