@@ -153,28 +153,31 @@ Json joint_json(const JointReport& joint)
 
 std::string report_as_json(const RunReport& report)
 {
-    Json json = {{"version", report.version},
-                 {"scene", report.scene},
-                 {"threads", report.threads},
-                 {"particles", {{"fluid", report.fluid_particles}, {"boundary", report.boundary_samples}}},
-                 {"particle_spacing", report.particle_spacing},
-                 {"rest_density", report.rest_density},
-                 {"simulated_seconds", report.simulated_seconds},
-                 {"steps", report.steps},
-                 {"wall_seconds", report.wall_seconds},
-                 {"stage_seconds", seconds_json(report.stage_seconds)},
-                 {"iterations", mean_and_max(report.iterations)},
-                 {"unconverged_steps", report.unconverged_steps},
-                 {"compression", mean_and_max(report.compression)},
-                 {"leaked", report.leaked},
-                 {"leaks_stopped", report.leaks_stopped},
-                 {"peak_memory_bytes", report.peak_memory_bytes},
-                 {"state_hash", hexadecimal(report.state_hash)},
-                 {"ledger", ledger_json(report.ledger, report.wall_force_mean)},
-                 {"bodies", Json::array()},
-                 {"joints", Json::array()},
-                 {"probes", Json::array()},
-                 {"notes", report.notes}};
+    Json json = {
+        {"version", report.version},
+        {"scene", report.scene},
+        {"threads", report.threads},
+        {"particles", {{"fluid", report.fluid_particles}, {"boundary", report.boundary_samples}}},
+        {"particle_spacing", report.particle_spacing},
+        {"rest_density", report.rest_density},
+        {"simulated_seconds", report.simulated_seconds},
+        {"steps", report.steps},
+        {"wall_seconds", report.wall_seconds},
+        {"stage_seconds", seconds_json(report.stage_seconds)},
+        {"iterations", mean_and_max(report.iterations)},
+        {"coupling",
+         {{"rounds", mean_and_max(report.coupling_rounds)}, {"disagreement", mean_and_max(report.disagreement)}}},
+        {"unconverged_steps", report.unconverged_steps},
+        {"compression", mean_and_max(report.compression)},
+        {"leaked", report.leaked},
+        {"leaks_stopped", report.leaks_stopped},
+        {"peak_memory_bytes", report.peak_memory_bytes},
+        {"state_hash", hexadecimal(report.state_hash)},
+        {"ledger", ledger_json(report.ledger, report.wall_force_mean)},
+        {"bodies", Json::array()},
+        {"joints", Json::array()},
+        {"probes", Json::array()},
+        {"notes", report.notes}};
     for (const BodyReport& body : report.bodies) json["bodies"].push_back(body_json(body));
     for (const JointReport& joint : report.joints) json["joints"].push_back(joint_json(joint));
     for (const ProbeReport& probe : report.probes)

@@ -57,6 +57,10 @@ void RunTally::add_totals(const StepReport& step)
     ++steps_;
     iterations_ += iterations;
     most_iterations_ = std::max(most_iterations_, iterations);
+    rounds_ += step.rounds;
+    most_rounds_ = std::max(most_rounds_, step.rounds);
+    disagreement_.add(step.disagreement, step.dt);
+    most_disagreement_ = std::max(most_disagreement_, step.disagreement);
     unconverged_ += step.converged ? 0 : 1;
     leaks_stopped_ += step.leaks_stopped;
     leaked_ = std::max(leaked_, step.leaked);
@@ -122,8 +126,12 @@ void RunTally::report_fluid(RunReport& report) const
     report.fluid_particles = world_.fluid().fluid().size();
     report.boundary_samples = world_.fluid().boundary().size();
     report.state_hash = world_.fluid().state_hash();
-    report.iterations = {steps_ > 0 ? static_cast<double>(iterations_) / static_cast<double>(steps_) : 0.0,
-                         static_cast<double>(most_iterations_)};
+    const auto per_step = [&](std::int64_t count) {
+        return steps_ > 0 ? static_cast<double>(count) / static_cast<double>(steps_) : 0.0;
+    };
+    report.iterations = {per_step(iterations_), static_cast<double>(most_iterations_)};
+    report.coupling_rounds = {per_step(rounds_), static_cast<double>(most_rounds_)};
+    report.disagreement = {disagreement_.mean().value_or(0.0), most_disagreement_};
     report.unconverged_steps = unconverged_;
     report.compression = {compression_.mean().value_or(0.0), compression_max_};
     report.leaked = leaked_;

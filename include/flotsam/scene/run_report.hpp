@@ -59,7 +59,9 @@ struct RunReport {
     std::int64_t steps = 0;
     double wall_seconds = 0.0; ///< of stepping and writing
     StageSeconds stage_seconds;
-    MeanAndMax iterations; ///< per step, of all its solves
+    MeanAndMax iterations;      ///< per step, of all its solves
+    MeanAndMax coupling_rounds; ///< of the pressure solve per step, until joints and contacts held and yielded with it
+    MeanAndMax disagreement;    ///< velocity that Bullet gave a body beside what the fluid believed in, per step [m/s]
     std::int64_t unconverged_steps = 0;
     MeanAndMax compression;         ///< mean over the last quarter of each step's mean; maximum of the run
     int leaked = 0;                 ///< most particles outside at one time

