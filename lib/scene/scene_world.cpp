@@ -8,7 +8,7 @@ namespace flotsam::scene {
 namespace {
 
 /// Bullet's default of 10 leaves joints of heavy bodies on light ones visibly open, and stacks creeping.
-constexpr int kIterations = 50, kIterationsWithJoints = 100;
+constexpr int kIterations = 50, kIterationsWithJoints = 1000;
 
 FluidWorldSettings fluid_settings(const SceneFile& scene, int threads)
 {
