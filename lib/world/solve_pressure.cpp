@@ -65,6 +65,7 @@ bool FluidWorld::Impl::shift_if_possible(StepReport& report)
     if (settings.pressure.source == PressureSettings::Source::split && steps_without_shift == 0) {
         const SolveResult result = solve_shift();
         report.shift_iterations = result.iterations;
+        report.products += result.products;
         report.converged = result.converged;
         failed_shifts = result.converged ? 0 : failed_shifts + 1;
         if (result.converged) return true;
@@ -128,6 +129,7 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
     goal.max_iterations = pressure.max_iterations;
     const SolveResult result = solver().solve(pressure_operator, source, diagonal, goal, multiplier);
     report.iterations = result.iterations;
+    report.products += result.products;
     report.residual = result.residual;
     report.converged = report.converged && result.converged;
 

@@ -16,6 +16,7 @@ struct StepReport {
     double dt = 0.0;               ///< [s]
     int iterations = 0;            ///< of the velocity solve (published: of the one solve)
     int shift_iterations = 0;      ///< of the density solve of the split
+    int products = 0;              ///< with the pressure system's matrix in both: what the solves cost
     bool converged = true;         ///< every solve reached its tolerance
     double residual = 0.0;         ///< of the returned step: mean / rest density [-]
     double compression_mean = 0.0; ///< mean over the fluid of max(0, rho/rho0 - 1)
