@@ -153,6 +153,7 @@ struct FluidWorld::Impl {
     void respond(Bodies& port, std::span<const Wrench> impulses, std::span<Twist> answers) const;
     void build_mobility(Bodies& port);
     [[nodiscard]] SolveResult solve_shift();
+    [[nodiscard]] double mean_length(std::span<const Vec4> vectors);
     [[nodiscard]] bool shift_if_possible(StepReport& report);
     void advance(double dt, Bodies& port, StepReport& report);
     void guard_walls(double dt, Bodies& port, StepReport& report);

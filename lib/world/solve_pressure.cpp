@@ -28,6 +28,13 @@ void FluidWorld::Impl::build_mobility(Bodies& port)
     }
 }
 
+double FluidWorld::Impl::mean_length(std::span<const Vec4> vectors)
+{
+    return workers.ordered_sum<double>(vectors.size(), sums, [&](std::size_t i) {
+        return static_cast<double>(vectors[i].norm());
+    }) / static_cast<double>(vectors.size());
+}
+
 /// Positions are shifted so that the densities fall to rest density; bodies stand still in it and no momentum moves.
 SolveResult FluidWorld::Impl::solve_shift()
 {
@@ -45,7 +52,7 @@ SolveResult FluidWorld::Impl::solve_shift()
     goal.tolerance = settings.pressure.tolerance;
     goal.max_iterations = settings.pressure.max_iterations;
     goal.min_iterations = 0;
-    const SolveResult result = solver().solve(pressure_operator, source, shift_diagonal, goal, shift_multiplier);
+    SolveResult result = solver().solve(pressure_operator, source, shift_diagonal, goal, shift_multiplier);
     system.velocity_change(shift_multiplier, shift);
     // The system is linear in the shift only for a fraction of a spacing.
     const Scalar longest = static_cast<Scalar>(0.1 * spacing());
@@ -53,6 +60,10 @@ SolveResult FluidWorld::Impl::solve_shift()
         const Scalar length = shift[i].norm();
         if (length > longest) shift[i] *= longest / length;
     });
+    // Enclosed water has no shift that takes its error out: a Krylov method then "solves" it by a huge one. Where there
+    // is room the mean stays below 0.02 d (from a step to the next: 0.003 d); without, it starts at 0.05 d.
+    constexpr double kMean = 0.03;
+    if (n > 0 && mean_length(shift) > kMean * spacing()) result.converged = false;
     return result;
 }
 
