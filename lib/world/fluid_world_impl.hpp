@@ -180,6 +180,8 @@ struct FluidWorld::Impl {
         return settings.pressure.coupling == PressureSettings::Coupling::strong && !bodies.empty();
     }
     [[nodiscard]] SolveResult solve_shift();
+    [[nodiscard]] double mean_length(std::span<const Vec4> vectors);
+    [[nodiscard]] double part_of_cold_residual(double scale);
     [[nodiscard]] bool shift_if_possible(StepReport& report);
     void advance(double dt, Bodies& port, StepReport& report);
     void guard_walls(double dt, Bodies& port, StepReport& report);

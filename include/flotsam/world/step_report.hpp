@@ -17,6 +17,7 @@ struct StepReport {
     int iterations = 0;            ///< of the velocity solve (published: of the one solve), in all rounds
     int rounds = 1;                ///< of that solve, until joints and contacts held and yielded as it had them
     int shift_iterations = 0;      ///< of the density solve of the split
+    int products = 0;              ///< with the pressure system's matrix in both: what the solves cost
     bool converged = true;         ///< every solve reached its tolerance
     double disagreement = 0.0;     ///< velocity that the engine gave a body beside what the fluid believed in [m/s];
                                    ///< riding on an application's ticks: of the tick before

@@ -19,6 +19,7 @@ struct SolveGoal {
 
 struct SolveResult {
     int iterations = 0;
+    int products = 0;      ///< with A: what a solve costs; the eigenvalue's included
     double residual = 0.0; ///< in units of the goal's tolerance
     bool converged = false;
 };

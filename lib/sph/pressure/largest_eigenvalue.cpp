@@ -23,6 +23,7 @@ double LargestEigenvalue::of(PressureOperator& op, std::span<const Scalar> diago
         return std::sqrt(workers.ordered_sum<double>(
             n, sums_, [&](std::size_t i) { return static_cast<double>(v[i]) * static_cast<double>(v[i]); }));
     };
+    products_ = is_new ? kFirst : kFurther;
     double value = 0.0, length = norm_of(vector_);
     for (int k = 0; k < (is_new ? kFirst : kFurther); ++k) {
         workers.for_each(n, [&](std::size_t i) { scaled_[i] = vector_[i] * root(i); });

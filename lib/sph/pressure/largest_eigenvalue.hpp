@@ -12,8 +12,11 @@ namespace flotsam {
 class LargestEigenvalue {
   public:
     double of(PressureOperator& op, std::span<const Scalar> diagonal);
+    /// Products with A that the last call took.
+    [[nodiscard]] int products() const { return products_; }
 
   private:
+    int products_ = 0;
     std::vector<Scalar> vector_, scaled_, product_;
     std::vector<double> sums_;
 };

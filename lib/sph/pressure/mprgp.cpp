@@ -27,8 +27,10 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
     });
     double alpha = 0.0; // length of projected steps, not known yet
     // y is kept as x: x = y * root. gradient_ = root * (A x - b).
+    SolveResult result;
     const auto refresh_gradient = [&] {
         op.apply(x, product_);
+        ++result.products;
         workers.for_each(n, [&](std::size_t i) { gradient_[i] = root_[i] * (product_[i] - b[i]); });
     };
     const auto free_gradient = [&](std::size_t i) { return x[i] > Scalar(0) ? gradient_[i] : Scalar(0); };
@@ -45,7 +47,6 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
         workers.for_each(n, [&](std::size_t i) { direction_[i] = free_gradient(i); });
     };
 
-    SolveResult result;
     std::vector<Sums>& sums = pair_sums_;
     refresh_gradient();
     restart_direction();
@@ -55,7 +56,10 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
         if (result.converged && result.iterations >= goal.min_iterations) break;
         if (result.iterations >= goal.max_iterations) break;
         // 1.5 / |A| leaves room for a norm that is underestimated (a bound of 2 is allowed).
-        if (result.iterations == 0) alpha = 1.5 / largest_eigenvalue_.of(op, diagonal);
+        if (result.iterations == 0) {
+            alpha = 1.5 / largest_eigenvalue_.of(op, diagonal);
+            result.products += largest_eigenvalue_.products();
+        }
         ++result.iterations;
         const Sums norms = workers.ordered_sum<Sums>(n, sums, [&](std::size_t i) {
             const double g = gradient_[i];
@@ -72,6 +76,7 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
         }
         workers.for_each(n, [&](std::size_t i) { work_[i] = root_[i] * direction_[i]; });
         op.apply(work_, product_);
+        ++result.products;
         const Sums products = workers.ordered_sum<Sums>(n, sums, [&](std::size_t i) {
             const double p = direction_[i];
             return Sums{gradient_[i] * p, p * static_cast<double>(root_[i]) * static_cast<double>(product_[i])};

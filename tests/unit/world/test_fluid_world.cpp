@@ -99,7 +99,7 @@ TEST_CASE("no setting is without effect, but the number of threads", "[world][se
         {"dissipation", [](auto& s) { s.dissipation = 0.5; }},
         {"max_time_step", [](auto& s) { s.max_time_step = 0.001; }},
         {"cfl", [](auto& s) { s.cfl = 0.3; }},
-        {"solver", [](auto& s) { s.pressure.solver = PressureSettings::Solver::mprgp; }},
+        {"solver", [](auto& s) { s.pressure.solver = PressureSettings::Solver::iisph; }},
         {"source", [](auto& s) { s.pressure.source = PressureSettings::Source::published; }},
         {"coupling", [](auto& s) { s.pressure.coupling = PressureSettings::Coupling::weak; }},
         {"tolerance", [](auto& s) { s.pressure.tolerance = 1e-5; }},

@@ -4,11 +4,12 @@ namespace flotsam {
 
 /// How the pressure system is solved. Every field changes the result of a step.
 struct PressureSettings {
-    enum class Solver { iisph, mprgp } solver = Solver::iisph;
+    enum class Solver { iisph, mprgp } solver = Solver::mprgp;
     enum class Source { split, published } source = Source::split;
     enum class Coupling { strong, weak } coupling = Coupling::strong;
     double tolerance = 1e-3;          ///< of the density: mean residual / rest density [-], > 0
-    double velocity_tolerance = 2e-5; ///< of the velocity solve of the split, per step [-], > 0
+    double velocity_tolerance = 2e-5; ///< of the velocity solve of the split, per step [-], > 0; at most a tenth of the
+                                      ///< residual that no pressure would leave
     int max_iterations = 200;         ///< of one solve; then it gives up: counted, not thrown
 };
 
