@@ -100,8 +100,13 @@ bool FluidWorld::Impl::in_body(std::size_t k, const Pose& pose, const Vec3d& poi
     if (!bodies[k].query) return false; // removed
     const Vec3d local = pose.to_body(point);
     const SurfaceQuery& query = *bodies[k].query;
-    // A point on the surface is outside, whatever rounding says: a lattice in line with the faces stays symmetric.
-    return query.bounds().contains(local) && query.inside(local) && query.signed_distance(local) < -1e-3 * spacing();
+    if (!query.bounds().inflated(1e-3 * spacing()).contains(local)) return false;
+    // Where a lattice lies in the faces, every other particle of it stays: rounding must not decide about whole layers,
+    // on one side of a body this way and on the other that.
+    const double distance = query.signed_distance(local);
+    if (std::abs(distance) > 1e-3 * spacing()) return distance < 0.0;
+    const Vec3d cell = point / spacing();
+    return std::fmod(std::abs(std::floor(cell.x()) + std::floor(cell.y()) + std::floor(cell.z())), 2.0) > 0.5;
 }
 
 void FluidWorld::Impl::cut_and_place_fluid()

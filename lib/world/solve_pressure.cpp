@@ -48,6 +48,7 @@ double FluidWorld::Impl::mean_length(std::span<const Vec4> vectors)
 /// Positions are shifted so that the densities fall to rest density; bodies stand still in it and no momentum moves.
 SolveResult FluidWorld::Impl::solve_shift()
 {
+    constexpr int kMostShiftIterations = 200; // what takes more has nowhere to be shifted to
     const std::size_t n = fluid.size();
     const Scalar rho0 = static_cast<Scalar>(settings.rest_density);
     source.resize(n);
@@ -60,7 +61,7 @@ SolveResult FluidWorld::Impl::solve_shift()
     SolveGoal goal;
     goal.scale = 1.0 / settings.rest_density;
     goal.tolerance = settings.pressure.tolerance;
-    goal.max_iterations = settings.pressure.max_iterations;
+    goal.max_iterations = std::min(kMostShiftIterations, settings.pressure.max_iterations);
     goal.min_iterations = 0;
     SolveResult result = solver().solve(pressure_operator, source, shift_diagonal, goal, shift_multiplier);
     system.velocity_change(shift_multiplier, shift);

@@ -41,10 +41,9 @@ struct Arm {
     }
 };
 
-FluidWorld tank(double spacing, double depth, PressureSettings::Solver solver = PressureSettings::Solver::iisph)
+FluidWorld tank(double spacing, double depth)
 {
     FluidWorldSettings settings;
-    settings.pressure.solver = solver;
     settings.particle_spacing = spacing;
     settings.threads = 2;
     FluidWorld water(settings);
@@ -109,7 +108,7 @@ TEST_CASE("motors that hold an arm in water bear its weight less that of the wat
 TEST_CASE("a light arm in water is no special case", "[bullet][links]")
 {
     Arm arm(0.75, 0.02); // a hundredth of the water's density: it would explode if coupled from step to step
-    FluidWorld water = tank(0.04, 0.6, PressureSettings::Solver::mprgp); // Jacobi takes ten times as many
+    FluidWorld water = tank(0.04, 0.6);
     BulletCoupling coupling(water, arm.scene.world);
     arm.couple(coupling);
     const btScalar angle = btScalar(0.3);

@@ -10,7 +10,7 @@ struct PressureSettings {
     double tolerance = 1e-3;          ///< of the density: mean residual / rest density [-], > 0
     double velocity_tolerance = 2e-5; ///< of the velocity solve of the split, per step [-], > 0; at most a tenth of the
                                       ///< residual that no pressure would leave
-    int max_iterations = 200;         ///< of one solve; then it gives up: counted, not thrown
+    int max_iterations = 1000;        ///< of one solve; then it gives up: counted, not thrown
 };
 
 } // namespace flotsam
