@@ -189,8 +189,8 @@ void BulletBodies::add_multibody_rows()
         ConstraintRow row;
         row.a = entity_of(from.a);
         row.b = entity_of(from.b);
-        row.J_a = from.jacobian_a;
-        row.J_b = from.jacobian_b;
+        row.jacobian_a = from.jacobian_a;
+        row.jacobian_b = from.jacobian_b;
         row.target = from.target;
         row.cfm = from.cfm;
         row.lower = from.lower;

@@ -79,8 +79,8 @@ int ConstrainedMotion::add_row(const ConstraintRow& row)
 {
     const std::size_t number = rows_.size();
     rows_.push_back(row);
-    add_part(number, row.a, row.J_a);
-    add_part(number, row.b, row.J_b);
+    add_part(number, row.a, row.jacobian_a);
+    add_part(number, row.b, row.jacobian_b);
     double own = 0.0;
     for (std::size_t p = first_part_.back(); p < parts_.size(); ++p) {
         Part& part = parts_[p];

@@ -18,7 +18,7 @@ using Mat6d = Eigen::Matrix<double, 6, 6>;
 /// impulse lambda lies between its bounds, <= target at the upper and >= target at the lower one.
 struct ConstraintRow {
     int a = -1, b = -1; ///< bodies; -1: one that stands still or moves as it is told to
-    Vec6d J_a = Vec6d::Zero(), J_b = Vec6d::Zero();
+    Vec6d jacobian_a = Vec6d::Zero(), jacobian_b = Vec6d::Zero();
     double target = 0.0;       ///< [m/s] or [rad/s]
     double cfm = 0.0;          ///< compliance [1/kg] or the like, >= 0
     double relative_cfm = 0.0; ///< compliance to be added, as part of J Y J^T

@@ -38,8 +38,8 @@ struct Contact {
         ConstraintRow row;
         row.a = a;
         row.b = b;
-        row.J_a = six(direction, arm_a.cross(direction));
-        row.J_b = six(-direction, -arm_b.cross(direction));
+        row.jacobian_a = six(direction, arm_a.cross(direction));
+        row.jacobian_b = six(-direction, -arm_b.cross(direction));
         return row;
     }
 };
@@ -98,8 +98,8 @@ void add_friction(const Contact& middle, double friction, double radius, int fir
     ConstraintRow spin;
     spin.a = middle.a;
     spin.b = middle.b;
-    spin.J_a = six(Vec3d::Zero(), middle.normal);
-    spin.J_b = -spin.J_a;
+    spin.jacobian_a = six(Vec3d::Zero(), middle.normal);
+    spin.jacobian_b = -spin.jacobian_a;
     spin.normal = first;
     spin.normals = count;
     spin.friction = friction * radius;
@@ -238,8 +238,8 @@ void ConstraintCollector::add_joint(const btDynamicsWorld& world, double dt, con
         ConstraintRow row;
         row.a = numbers.of(joint.getRigidBodyA());
         row.b = numbers.of(joint.getRigidBodyB());
-        row.J_a = six(from_bullet(from.linear_a), from_bullet(from.angular_a));
-        row.J_b = six(from_bullet(from.linear_b), from_bullet(from.angular_b));
+        row.jacobian_a = six(from_bullet(from.linear_a), from_bullet(from.angular_a));
+        row.jacobian_b = six(from_bullet(from.linear_b), from_bullet(from.angular_b));
         row.target = static_cast<double>(from.target);
         row.lower = std::max(bound(from.lower), -most);
         row.upper = std::min(bound(from.upper), most);

@@ -50,7 +50,7 @@ void FluidWorld::Impl::prepare(Bodies& port)
         surfaces.push_back({wall.query.get(), wall.side != WallSide::outside, wall.side != WallSide::inside});
     }
     for (const BodySurface& body : bodies) surfaces.push_back({body.query.get(), false, true});
-    guard.build(std::move(surfaces), spacing(), workers);
+    guard.build(surfaces, spacing(), workers);
     place_body_samples();
     relax(60);
 }

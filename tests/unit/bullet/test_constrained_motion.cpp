@@ -72,7 +72,7 @@ void put_cube_on_ground(ConstrainedMotion& motion, double fall, double aside)
     const auto row = [](const Vec3d& arm, const Vec3d& direction) {
         ConstraintRow made;
         made.a = 0;
-        made.J_a << direction, arm.cross(direction);
+        made.jacobian_a << direction, arm.cross(direction);
         return made;
     };
     for (const double x : {-0.5, 0.5}) {
@@ -114,12 +114,12 @@ TEST_CASE("bodies under joints answer as the saddle-point system of all of them 
         ConstraintRow row;
         row.a = r % 4;
         row.b = r < 4 ? (r + 1) % 4 : -1;
-        row.J_a = random_six(random);
-        row.J_b = random_six(random);
+        row.jacobian_a = random_six(random);
+        row.jacobian_b = random_six(random);
         row.target = random.number();
         motion.add_row(row);
-        J.block<1, 6>(r, 6 * row.a) = row.J_a.transpose();
-        if (row.b >= 0) J.block<1, 6>(r, 6 * row.b) = row.J_b.transpose();
+        J.block<1, 6>(r, 6 * row.a) = row.jacobian_a.transpose();
+        if (row.b >= 0) J.block<1, 6>(r, 6 * row.b) = row.jacobian_b.transpose();
         target[r] = row.target;
     }
     const std::vector<Wrench> impulses = random_wrenches(random, bodies);
@@ -154,8 +154,8 @@ TEST_CASE("the response under joints and contacts is symmetric, takes energy fro
         ConstraintRow row;
         row.a = r % 5;
         row.b = (r + 2) % 5;
-        row.J_a = random_six(random);
-        row.J_b = random_six(random);
+        row.jacobian_a = random_six(random);
+        row.jacobian_b = random_six(random);
         row.target = random.number();
         if (r % 2 == 0) row.lower = 0.0;
         motion.add_row(row);
