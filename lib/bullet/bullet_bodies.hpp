@@ -24,8 +24,8 @@ namespace flotsam {
 /// prediction plus what the fluid gave, whatever the body's damping; joints and contacts are then solved by Bullet
 /// once more, and disagreement() says how far it came out elsewhere. Between the two, fluid steps shorter than
 /// Bullet's move the bodies as they will move: each gets its part of the free motion.
-/// **Rejected:** changing velocities instead of adding forces; Bullet would damp the fluid's part of them, but not
-/// gravity's, and a body with much damping would sink.
+/// Forces, not changes of velocity, which Bullet would damp: a body with much damping would sink. Torques, though, as
+/// an angular velocity, with the damping reckoned in: Bullet's friction does not see them (turn).
 ///
 /// A body with an impulse that is not zero is awake: floating at rest needs one in each step, which would lift a
 /// sleeping body, to which Bullet applies no gravity. One without is not touched in any way.
