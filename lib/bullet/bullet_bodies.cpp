@@ -1,7 +1,6 @@
 #include "bullet/bullet_bodies.hpp"
 
 #include "bullet/convert.hpp"
-#include "bullet/free_motion.hpp"
 #include "flotsam/core/contracts.hpp"
 
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
@@ -122,7 +121,7 @@ void BulletBodies::begin(double seconds, bool in_tick)
     end_.clear();
     for (Articulation& articulation : articulations_) begin_articulation(articulation);
     for (Coupled& coupled : bodies_) {
-        begin_body(coupled, seconds, in_tick);
+        begin_body(coupled);
         if (coupled.link != nullptr) continue;
         coupled.entity = add_entity(coupled.start, coupled.end, dense(coupled.mobility));
         if (coupled.body != nullptr) numbers_.set(*coupled.body, coupled.entity, coupled.is_dynamic);
@@ -208,7 +207,7 @@ int BulletBodies::entity_of(const RowEnd& end)
     return numbers_.of(*end.body);
 }
 
-void BulletBodies::begin_body(Coupled& coupled, double seconds, bool in_tick)
+void BulletBodies::begin_body(Coupled& coupled)
 {
     coupled.mobility = {};
     coupled.given = {};
@@ -220,27 +219,27 @@ void BulletBodies::begin_body(Coupled& coupled, double seconds, bool in_tick)
     const bool is_kinematic = body.isKinematicObject();
     if (is_kinematic && !coupled.was_kinematic) {
         coupled.kinematic = {};
-        if (!in_tick) coupled.kinematic.start(body);
+        if (!is_in_tick_) coupled.kinematic.start(body);
     }
     coupled.was_kinematic = is_kinematic;
     if (is_kinematic) {
-        coupled.start = in_tick ? coupled.kinematic.plan_in_tick(body, seconds) : coupled.kinematic.plan(body, seconds);
-        coupled.pose = in_tick ? coupled.kinematic.pose_in_tick() : KinematicMotion::start_pose(body);
+        coupled.start =
+            is_in_tick_ ? coupled.kinematic.plan_in_tick(body, seconds_) : coupled.kinematic.plan(body, seconds_);
+        coupled.pose = is_in_tick_ ? coupled.kinematic.pose_in_tick() : KinematicMotion::start_pose(body);
         coupled.end = coupled.unaided = coupled.start;
     } else {
         coupled.pose = from_bullet(body.getWorldTransform());
-        if (!body.isStaticObject() && body.getActivationState() != DISABLE_SIMULATION)
-            begin_dynamic(coupled, seconds, in_tick);
+        if (!body.isStaticObject() && body.getActivationState() != DISABLE_SIMULATION) begin_dynamic(coupled);
     }
     coupled.twist = coupled.start;
 }
 
-void BulletBodies::begin_dynamic(Coupled& coupled, double seconds, bool in_tick)
+void BulletBodies::begin_dynamic(Coupled& coupled)
 {
     btRigidBody& body = *coupled.body;
     coupled.is_dynamic = true;
     coupled.is_asleep = !body.isActive();
-    const FreeMotion motion = free_motion(body, seconds, world_.getSolverInfo().m_maxGyroscopicForce, in_tick);
+    const FreeMotion motion = free_motion_of(body);
     coupled.mobility = mobility_of(body);
     coupled.unaided = motion.end;
     if (coupled.is_asleep) return;
@@ -257,7 +256,7 @@ int BulletBodies::add_uncoupled(btRigidBody& body)
     if (body.isKinematicObject())
         other.start = other.end = twist_from_bullet(body.getLinearVelocity(), body.getAngularVelocity());
     else if (body.getActivationState() != DISABLE_SIMULATION)
-        begin_dynamic(other, seconds_, is_in_tick_);
+        begin_dynamic(other);
     return add_entity(other.start, other.end, dense(other.mobility));
 }
 
@@ -402,16 +401,19 @@ bool BulletBodies::turn(const Coupled& coupled, const Vec3d& end) const
     const double kept = std::pow(1.0 - static_cast<double>(body.getAngularDamping()), seconds_);
     if (!(kept > 0.1)) return false;
     const btVector3 before = body.getAngularVelocity();
-    for (int k = 0; k < kSteps; ++k) {
-        const FreeMotion motion = free_motion(body, seconds_, world_.getSolverInfo().m_maxGyroscopicForce, is_in_tick_);
-        const Vec3d missing = end - motion.end.angular;
-        if (!(missing.norm() > 1e-15 * (1.0 + end.norm()))) break;
+    Vec3d missing = end - free_motion_of(body).end.angular;
+    for (int k = 0; k < kSteps && missing.norm() > 1e-15 * (1.0 + end.norm()); ++k) {
         body.setAngularVelocity(body.getAngularVelocity() + to_bullet(missing / kept));
+        missing = end - free_motion_of(body).end.angular;
     }
-    const FreeMotion motion = free_motion(body, seconds_, world_.getSolverInfo().m_maxGyroscopicForce, is_in_tick_);
-    if ((end - motion.end.angular).norm() <= 1e-6 * (1.0 + end.norm())) return true;
+    if (missing.norm() <= 1e-6 * (1.0 + end.norm())) return true;
     body.setAngularVelocity(before);
     return false;
+}
+
+FreeMotion BulletBodies::free_motion_of(btRigidBody& body) const
+{
+    return free_motion(body, seconds_, world_.getSolverInfo().m_maxGyroscopicForce, is_in_tick_);
 }
 
 void BulletBodies::take_back_forces()

@@ -2,6 +2,7 @@
 
 #include "bullet/constrained_motion.hpp"
 #include "bullet/constraint_rows.hpp"
+#include "bullet/free_motion.hpp"
 #include "bullet/kinematic_motion.hpp"
 #include "bullet/mobility.hpp"
 #include "bullet/multibody_motion.hpp"
@@ -86,8 +87,9 @@ class BulletBodies final : public Bodies {
         bool is_pushed = false;
         std::vector<Wrench> impulses; ///< per link
     };
-    void begin_body(Coupled& coupled, double seconds, bool in_tick);
-    void begin_dynamic(Coupled& coupled, double seconds, bool in_tick);
+    void begin_body(Coupled& coupled);
+    void begin_dynamic(Coupled& coupled);
+    [[nodiscard]] FreeMotion free_motion_of(btRigidBody& body) const;
     [[nodiscard]] bool turn(const Coupled& coupled, const Vec3d& end) const;
     void begin_articulation(Articulation& articulation);
     void begin_link(Coupled& coupled);

@@ -11,7 +11,7 @@
 
 namespace flotsam {
 
-using Vec6d = Eigen::Matrix<double, 6, 1>;
+using Vec6d = Eigen::Matrix<double, 6, 1>; ///< linear part, then angular
 using Mat6d = Eigen::Matrix<double, 6, 6>;
 
 /// One scalar constraint between the twists of two bodies at the end of a step:  J v + cfm lambda = target  where the

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flotsam/core/types.hpp"
+#include "bullet/constrained_motion.hpp"
 
 #include <BulletDynamics/ConstraintSolver/btSolverBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraint.h>
@@ -8,8 +8,6 @@
 #include <vector>
 
 namespace flotsam {
-
-using Vec6d = Eigen::Matrix<double, 6, 1>; ///< linear, then angular
 
 /// What one side of a row acts on: a link of a multibody, a rigid body, or the world, which does not move.
 struct RowEnd {
