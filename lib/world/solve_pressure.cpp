@@ -107,7 +107,7 @@ bool FluidWorld::Impl::shift_if_possible(StepReport& report)
 /// acceleration leaves no more than that.
 double FluidWorld::Impl::part_of_cold_residual(double scale)
 {
-    constexpr double kPart = 0.1, kLeast = 1e-7; // the least: rounding
+    constexpr double kPart = 0.3, kLeast = 1e-7; // the least: rounding
     if (source.empty()) return kLeast;
     const double sum = workers.ordered_sum<double>(
         source.size(), sums, [&](std::size_t i) { return std::max(0.0, static_cast<double>(source[i])); });

@@ -8,7 +8,7 @@ struct PressureSettings {
     enum class Source { split, published } source = Source::split;
     enum class Coupling { strong, weak } coupling = Coupling::strong;
     double tolerance = 1e-3;          ///< of the density: mean residual / rest density [-], > 0
-    double velocity_tolerance = 2e-5; ///< of the velocity solve of the split, per step [-], > 0; at most a tenth of the
+    double velocity_tolerance = 2e-5; ///< of the velocity solve of the split, per step [-], > 0; at most 0.3 of the
                                       ///< residual that no pressure would leave
     int max_iterations = 1000;        ///< of one solve; then it gives up: counted, not thrown
 };
