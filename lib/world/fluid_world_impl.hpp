@@ -8,6 +8,7 @@
 #include "flotsam/world/fluid_world.hpp"
 #include "sph/contacts.hpp"
 #include "sph/forces/viscosity.hpp"
+#include "sph/pressure/response_preconditioner.hpp"
 #include "sph/pressure/complementarity_solver.hpp"
 #include "sph/pressure/pressure_system.hpp"
 #include "world/keep_ledger.hpp"
@@ -92,6 +93,7 @@ struct FluidWorld::Impl {
     RelaxedJacobi relaxed_jacobi;
     Mprgp mprgp;
     PressureOperator pressure_operator;
+    ResponsePreconditioner preconditioner;
     WallGuard guard;
     std::vector<BodyState> states;
     std::vector<Vec3d> centers;  ///< of each owner

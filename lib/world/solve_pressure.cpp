@@ -169,14 +169,15 @@ void FluidWorld::Impl::solve_velocities(const PressureSystem& system, double dt,
     system.fluid_diagonal(diagonal);
     if (is_strong()) {
         build_mobility(port);
-        const bool exact = pressure.solver == PressureSettings::Solver::mprgp;
-        system.add_response_diagonal(mobility, exact, diagonal);
+        preconditioner.build(system, mobility, diagonal);
+        system.add_response_diagonal(mobility, diagonal);
     }
     const auto answer_impulses = [&](std::span<const Wrench> impulses, std::span<Twist> answers) {
         respond(port, impulses, answers);
     };
     const OwnerResponse response = answer_impulses;
     pressure_operator.bind(system, is_strong() ? &response : nullptr, owners());
+    if (is_strong()) pressure_operator.set_preconditioner(&preconditioner);
     SolveGoal goal;
     goal.scale = dt / rho0;
     goal.tolerance =

@@ -52,8 +52,9 @@ class RelaxedJacobi final : public ComplementaritySolver {
     std::vector<double> sums_;
 };
 
-/// Modified proportioning with reduced gradient projections, preconditioned by the diagonal.
-/// **Source:** Dostal & Schoeberl 2005, algorithm 1, on the system scaled to unit diagonal.
+/// Modified proportioning with reduced gradient projections. Variables are scaled by the diagonal; on the free
+/// particles the operator's preconditioner works, if it has one.
+/// **Source:** Dostal & Schoeberl 2005, algorithm 1; Dostal, Domoradova & Sadowska 2011 for preconditioning in face.
 class Mprgp final : public ComplementaritySolver {
   public:
     SolveResult solve(PressureOperator& op, std::span<const Scalar> b, std::span<const Scalar> diagonal,
@@ -61,14 +62,14 @@ class Mprgp final : public ComplementaritySolver {
 
   private:
     struct Sums {
-        double a = 0.0, b = 0.0;
+        double a = 0.0, b = 0.0, c = 0.0;
         Sums& operator+=(const Sums& other);
     };
     double largest_feasible_step(std::span<const Scalar> x, const Workers& workers);
     void advance(double step, std::span<Scalar> x, const Workers& workers);
 
     LargestEigenvalue largest_eigenvalue_;
-    std::vector<Scalar> root_, gradient_, direction_, product_, work_;
+    std::vector<Scalar> root_, gradient_, preconditioned_, direction_, product_, work_;
     std::vector<double> sums_;
     std::vector<Sums> pair_sums_;
 };

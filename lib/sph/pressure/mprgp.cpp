@@ -1,4 +1,5 @@
 #include "sph/pressure/complementarity_solver.hpp"
+#include "sph/pressure/response_preconditioner.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,23 +10,25 @@ Mprgp::Sums& Mprgp::Sums::operator+=(const Sums& other)
 {
     a += other.a;
     b += other.b;
+    c += other.c;
     return *this;
 }
 
 // Symbols as in the paper: g gradient, phi free gradient (g where x > 0), beta chopped gradient (min(g, 0) where
-// x = 0), phi~ = min(x / alpha, phi), p direction. All of them in the variable y = sqrt(diagonal) x, A scaled likewise.
+// x = 0), phi~ = min(x / alpha, phi), z preconditioned phi, p direction. All of them in the variable y = sqrt(diagonal)
+// x, A scaled likewise.
 
 SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::span<const Scalar> diagonal,
                          const SolveGoal& goal, std::span<Scalar> x)
 {
     const Workers& workers = op.system().workers();
     const std::size_t n = x.size();
-    for (auto* v : {&root_, &gradient_, &direction_, &product_, &work_}) v->resize(n);
+    for (auto* v : {&root_, &gradient_, &preconditioned_, &direction_, &product_, &work_}) v->resize(n);
     workers.for_each(n, [&](std::size_t i) {
         root_[i] = diagonal[i] > Scalar(0) ? Scalar(1) / std::sqrt(diagonal[i]) : Scalar(0); // 0 freezes lone particles
         if (!(diagonal[i] > Scalar(0))) x[i] = 0;
     });
-    double alpha = 0.0; // length of projected steps, not known yet
+    double norm = 0.0, alpha = 0.0; // of A, and the length of projected steps; not known yet
     // y is kept as x: x = y * root. gradient_ = root * (A x - b).
     SolveResult result;
     const auto refresh_gradient = [&] {
@@ -43,8 +46,21 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
         });
         return n == 0 ? 0.0 : goal.scale * sum / static_cast<double>(n);
     };
+    const auto precondition = [&] {
+        if (op.preconditioner() == nullptr) {
+            workers.for_each(n, [&](std::size_t i) { preconditioned_[i] = free_gradient(i); });
+            return;
+        }
+        workers.for_each(n,
+                         [&](std::size_t i) { work_[i] = root_[i] > Scalar(0) ? gradient_[i] / root_[i] : Scalar(0); });
+        op.preconditioner()->apply(x, work_, preconditioned_);
+        workers.for_each(n, [&](std::size_t i) {
+            preconditioned_[i] = root_[i] > Scalar(0) ? preconditioned_[i] / root_[i] : Scalar(0);
+        });
+    };
     const auto restart_direction = [&] {
-        workers.for_each(n, [&](std::size_t i) { direction_[i] = free_gradient(i); });
+        precondition();
+        direction_.assign(preconditioned_.begin(), preconditioned_.end());
     };
 
     std::vector<Sums>& sums = pair_sums_;
@@ -55,18 +71,18 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
         result.converged = result.residual <= goal.tolerance;
         if (result.converged && result.iterations >= goal.min_iterations) break;
         if (result.iterations >= goal.max_iterations) break;
-        // 1.5 / |A| leaves room for a norm that is underestimated (a bound of 2 is allowed).
         if (result.iterations == 0) {
-            alpha = 1.5 / largest_eigenvalue_.of(op, diagonal);
+            norm = largest_eigenvalue_.of(op, diagonal);
             result.products += largest_eigenvalue_.products();
         }
+        alpha = 1.5 / norm; // leaves room for a norm that is underestimated (a bound of 2 is allowed)
         ++result.iterations;
         const Sums norms = workers.ordered_sum<Sums>(n, sums, [&](std::size_t i) {
             const double g = gradient_[i];
             const double phi = free_gradient(i);
             const double reduced = std::min(static_cast<double>(y_of(i)) / alpha, phi);
             const double beta = x[i] > Scalar(0) ? 0.0 : std::min(g, 0.0);
-            return Sums{beta * beta, reduced * phi};
+            return Sums{beta * beta, reduced * phi, 0.0};
         });
         const bool proportional = norms.a <= norms.b;
         if (!proportional) {
@@ -79,8 +95,9 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
         ++result.products;
         const Sums products = workers.ordered_sum<Sums>(n, sums, [&](std::size_t i) {
             const double p = direction_[i];
-            return Sums{gradient_[i] * p, p * static_cast<double>(root_[i]) * static_cast<double>(product_[i])};
+            return Sums{gradient_[i] * p, p * static_cast<double>(root_[i]) * static_cast<double>(product_[i]), p * p};
         });
+        if (products.c > 0.0) norm = std::max(norm, products.b / products.c); // never too small for long
         if (!(products.b > 0.0)) { // no curvature left along it within rounding
             refresh_gradient();
             restart_direction();
@@ -95,13 +112,14 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
         const double feasible = largest_feasible_step(x, workers);
         if (step <= feasible) {
             advance(step, x, workers);
+            precondition();
             const Sums next = workers.ordered_sum<Sums>(n, sums, [&](std::size_t i) {
-                return Sums{static_cast<double>(free_gradient(i)) * static_cast<double>(root_[i]) *
+                return Sums{static_cast<double>(preconditioned_[i]) * static_cast<double>(root_[i]) *
                                 static_cast<double>(product_[i]),
-                            0.0};
+                            0.0, 0.0};
             });
             const Scalar gamma = static_cast<Scalar>(next.a / products.b);
-            workers.for_each(n, [&](std::size_t i) { direction_[i] = free_gradient(i) - gamma * direction_[i]; });
+            workers.for_each(n, [&](std::size_t i) { direction_[i] = preconditioned_[i] - gamma * direction_[i]; });
         } else {
             advance(feasible, x, workers);
             workers.for_each(n, [&](std::size_t i) {

@@ -71,7 +71,7 @@ void PressureSystem::fluid_diagonal(std::span<Scalar> diagonal) const
     });
 }
 
-void PressureSystem::add_response_diagonal(std::span<const Eigen::Matrix<double, 6, 6>> mobility, bool exact,
+void PressureSystem::add_response_diagonal(std::span<const Eigen::Matrix<double, 6, 6>> mobility,
                                            std::span<Scalar> diagonal) const
 {
     using Vec6d = Eigen::Matrix<double, 6, 1>;
@@ -86,8 +86,7 @@ void PressureSystem::add_response_diagonal(std::span<const Eigen::Matrix<double,
         }
         for (std::uint32_t k = contacts_->start[owner]; k < contacts_->start[owner + 1]; ++k) {
             const Vec6d u = root_t * contacts_->row[k].cast<double>();
-            const double part = exact ? u.squaredNorm() : u.cwiseAbs().dot(sums);
-            diagonal[contacts_->particle[k]] += mass_ * static_cast<Scalar>(part);
+            diagonal[contacts_->particle[k]] += mass_ * static_cast<Scalar>(u.cwiseAbs().dot(sums));
         }
     }
 }
@@ -96,6 +95,7 @@ void PressureOperator::bind(const PressureSystem& system, const OwnerResponse* r
 {
     system_ = &system;
     response_ = response;
+    preconditioner_ = nullptr;
     velocity_change_.resize(system.size());
     impulses_.resize(owners);
     twists_.assign(owners, Twist{});

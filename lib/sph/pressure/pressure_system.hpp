@@ -33,6 +33,8 @@ class PressureSystem {
 
     [[nodiscard]] std::size_t size() const { return pairs_->rows(); }
     [[nodiscard]] const Workers& workers() const { return *workers_; }
+    [[nodiscard]] const Contacts& contacts() const { return *contacts_; }
+    [[nodiscard]] Scalar particle_mass() const { return mass_; }
 
     /// dv of each particle for multipliers x.
     void velocity_change(std::span<const Scalar> x, std::span<Vec4> dv) const;
@@ -48,9 +50,9 @@ class PressureSystem {
 
     /// Adds to `diagonal`, for each particle at an owner that responds, a bound of the row sum of the owner's part of
     /// A: with u_i = L^T row_i, Y = L L^T: sum_j |u_i . u_j| <= sum_c |u_ic| sum_j |u_jc|. A relaxed Jacobi sweep with
-    /// this diagonal converges however light the body is. `exact` adds the true diagonal instead.
-    void add_response_diagonal(std::span<const Eigen::Matrix<double, 6, 6>> mobility, bool exact,
-                               std::span<Scalar> diagonal) const;
+    /// this diagonal converges however light the body is, and A scaled by it has no eigenvalue that grows with 1 /
+    /// mass.
+    void add_response_diagonal(std::span<const Eigen::Matrix<double, 6, 6>> mobility, std::span<Scalar> diagonal) const;
 
   private:
     const Pairs* pairs_;
@@ -59,11 +61,17 @@ class PressureSystem {
     const Workers* workers_;
 };
 
+class ResponsePreconditioner;
+
 /// A PressureSystem together with the response of its owners and the scratch a product needs.
 class PressureOperator {
   public:
     /// `response` may be null: owners stand still (weak coupling, and the position shift).
     void bind(const PressureSystem& system, const OwnerResponse* response, std::size_t owners);
+
+    /// What a Krylov method may precondition with, until the next bind; null: the diagonal alone.
+    void set_preconditioner(ResponsePreconditioner* preconditioner) { preconditioner_ = preconditioner; }
+    [[nodiscard]] ResponsePreconditioner* preconditioner() const { return preconditioner_; }
 
     /// out = A x.
     void apply(std::span<const Scalar> x, std::span<Scalar> out);
@@ -73,6 +81,7 @@ class PressureOperator {
   private:
     const PressureSystem* system_ = nullptr;
     const OwnerResponse* response_ = nullptr;
+    ResponsePreconditioner* preconditioner_ = nullptr;
     std::vector<Vec4> velocity_change_;
     std::vector<Wrench> impulses_;
     std::vector<Twist> twists_;
