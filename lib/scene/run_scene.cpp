@@ -112,8 +112,9 @@ class Run {
         report.threads = Workers(options_.threads).threads();
         report.wall_seconds = seconds();
         report.peak_memory_bytes = peak_memory_bytes();
-        report.notes = prepared_.notes;
-        report.notes.insert(report.notes.end(), world_.fluid().notes().begin(), world_.fluid().notes().end());
+        const std::vector<std::string>& of_world = world_.fluid().notes();
+        report.notes.insert(report.notes.begin(), of_world.begin(), of_world.end());
+        report.notes.insert(report.notes.begin(), prepared_.notes.begin(), prepared_.notes.end());
         report.failure = failure;
         return report;
     }

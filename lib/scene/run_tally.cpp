@@ -64,6 +64,7 @@ void RunTally::add_totals(const StepReport& step)
     unconverged_ += step.converged ? 0 : 1;
     leaks_stopped_ += step.leaks_stopped;
     leaked_ = std::max(leaked_, step.leaked);
+    fallen_ += step.fallen_particles;
     compression_max_ = std::max(compression_max_, step.compression_max);
     add_seconds(seconds_, step.seconds);
 }
@@ -136,6 +137,9 @@ void RunTally::report_fluid(RunReport& report) const
     report.compression = {compression_.mean().value_or(0.0), compression_max_};
     report.leaked = leaked_;
     report.leaks_stopped = leaks_stopped_;
+    if (fallen_ > 0)
+        report.notes.push_back(std::to_string(fallen_) +
+                               " particles left over open sides, fell out of reach and were removed");
 }
 
 BodyReport RunTally::report_body(std::size_t k) const

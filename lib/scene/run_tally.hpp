@@ -63,7 +63,7 @@ class RunTally {
     const PreparedScene& prepared_;
     const SceneWorld& world_;
     std::int64_t steps_ = 0, unconverged_ = 0, leaks_stopped_ = 0, iterations_ = 0, rounds_ = 0;
-    int most_iterations_ = 0, most_rounds_ = 0, leaked_ = 0;
+    int most_iterations_ = 0, most_rounds_ = 0, leaked_ = 0, fallen_ = 0;
     TimeMean<double> disagreement_{0.0};
     double most_disagreement_ = 0.0;
     double compression_max_ = 0.0, next_draft_ = 0.0;

@@ -8,9 +8,9 @@
 #include "flotsam/world/fluid_world.hpp"
 #include "sph/contacts.hpp"
 #include "sph/forces/viscosity.hpp"
-#include "sph/pressure/response_preconditioner.hpp"
 #include "sph/pressure/complementarity_solver.hpp"
 #include "sph/pressure/pressure_system.hpp"
+#include "sph/pressure/response_preconditioner.hpp"
 #include "world/keep_ledger.hpp"
 #include "world/wall_guard.hpp"
 
@@ -67,8 +67,9 @@ struct FluidWorld::Impl {
     Workers workers;
     Kernel kernel;
     double time = 0.0;
-    double max_pressure = 0.0; ///< of the last step; before it the hydrostatic one [Pa]
-    double max_speed = 0.0;    ///< of fluid and bodies [m/s]
+    double max_pressure = 0.0;  ///< of the last step; before it the hydrostatic one [Pa]
+    double max_speed = 0.0;     ///< of fluid and bodies [m/s]
+    double deepest_catch = 0.0; ///< water that is further down along gravity is gone [m]
     bool prepared = false;
     bool is_stepping = false;
     std::vector<std::string> notes;
@@ -161,6 +162,10 @@ struct FluidWorld::Impl {
     [[nodiscard]] bool has_jumped(std::size_t k) const;
     void make_room(std::size_t k, StepReport& report);
     void remove_particles(std::span<const std::uint32_t> rising, StepReport& report);
+
+    // fallen_water.cpp
+    void find_deepest_catch();
+    void remove_fallen(StepReport& report);
 
     // step.cpp
     StepReport step(double dt, Bodies& port);

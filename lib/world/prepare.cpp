@@ -44,6 +44,7 @@ void FluidWorld::Impl::prepare(Bodies& port)
     read_bodies(settings.max_time_step, port);
     choose_wall_sides();
     cut_and_place_fluid();
+    find_deepest_catch();
     sample_surfaces();
     std::vector<GuardedSurface> surfaces;
     for (const Wall& wall : walls) {

@@ -42,6 +42,7 @@ StepReport FluidWorld::Impl::step(double dt, Bodies& port)
         const StageClock clock(report.seconds.bodies);
         read_bodies(dt, port);
         take_in_changes(report);
+        remove_fallen(report);
         place_body_samples();
     }
     {

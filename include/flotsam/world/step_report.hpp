@@ -26,7 +26,8 @@ struct StepReport {
     double compression_max = 0.0;
     int leaks_stopped = 0;     ///< particles that the wall guard put back in this step
     int leaked = 0;            ///< particles that are outside all the same
-    int removed_particles = 0; ///< by bodies that were added, reshaped or put in their place before the step
+    int removed_particles = 0; ///< before the step: in the way of bodies that were added, reshaped or put there; fallen
+    int fallen_particles = 0;  ///< those of them that left over an open side and fell out of reach of everything
     Vec3d removed_momentum = Vec3d::Zero(); ///< theirs [kg m/s]
     double max_speed = 0.0;                 ///< of the fluid [m/s]
     Vec3d fluid_momentum = Vec3d::Zero();   ///< after the step [kg m/s]

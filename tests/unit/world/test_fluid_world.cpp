@@ -370,3 +370,27 @@ TEST_CASE("the allowed step follows speed, viscosity and the given bound", "[wor
     fluid.prepare(none);
     CHECK(fluid.allowed_time_step() == Approx(s.cfl * kSpacing / 10.0));
 }
+
+TEST_CASE("water that falls out over an open side is removed and booked, and holds no step up", "[world]")
+{
+    FluidWorldSettings s = plane();
+    FluidWorld fluid(s);
+    fluid.add_box_wall({Vec3d(0, -0.1, 0), Vec3d(0.2, 0.1, 0.2)}, {"+x", "+z"});
+    fluid.add_block({Vec3d(0, -0.1, 0), Vec3d(0.2, 0.1, 0.2)});
+    NoBodies none;
+    fluid.prepare(none);
+    const std::size_t before = fluid.fluid().size();
+    int fallen = 0;
+    while (fluid.time() < 1.5) {
+        const StepReport report = fluid.step(fluid.allowed_time_step(), none);
+        CHECK(report.removed_particles == report.fallen_particles);
+        fallen += report.fallen_particles;
+    }
+    CHECK(fallen > 30);
+    CHECK(fluid.fluid().size() == before - static_cast<std::size_t>(fallen));
+    CHECK(fluid.ledger().removed.volume == Approx(fallen * kSpacing * kSpacing));
+    CHECK(std::abs(fluid.ledger().errors().volume) < 1e-9);
+    // From 0.2 m down to 0.2 m below the floor, and a step further.
+    for (const Vec4& p : fluid.fluid().position) CHECK(p.z() > Scalar(-0.25));
+    CHECK(fluid.allowed_time_step() > s.cfl * kSpacing / 4.0);
+}
