@@ -30,7 +30,7 @@ void Viscosity::add(const ViscositySettings& settings, double dt, const FluidSta
 void Viscosity::find_gradients(const ViscositySettings& settings, const FluidState& fluid, const Pairs& pairs,
                                const Workers& workers)
 {
-    gradient_.assign(settings.dissipation > 0.0 ? fluid.size() : 0, Columns{});
+    gradient_.resize(settings.dissipation > 0.0 ? fluid.size() : 0);
     const Scalar volume = static_cast<Scalar>(fluid.particle_mass / settings.rest_density);
     workers.for_each(gradient_.size(), [&](std::size_t i) {
         Columns slope, shape;
