@@ -111,10 +111,8 @@ bool FluidWorld::Impl::has_jumped(std::size_t k) const
     const BodySurface& body = bodies[k];
     if (!body.query || !body.last_pose) return false;
     const Pose &then = *body.last_pose, &now = states[k].pose;
-    const Aabb bounds = body.query->bounds();
-    const double radius = bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).norm();
     const double moved_by =
-        (now.position - then.position).norm() + radius * now.orientation.angularDistance(then.orientation);
+        (now.position - then.position).norm() + body.reach() * now.orientation.angularDistance(then.orientation);
     return moved_by > spacing() + 2.0 * last_dt * max_speed;
 }
 

@@ -43,9 +43,7 @@ void FluidWorld::Impl::remove_fallen(StepReport& report)
     double limit = deepest_catch;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
         if (!bodies[k].query || states[k].responds) continue;
-        const Aabb box = bodies[k].query->bounds();
-        const double radius = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
-        limit = std::max(limit, down.dot(states[k].pose.position) + radius);
+        limit = std::max(limit, down.dot(states[k].pose.position) + bodies[k].reach());
     }
     const auto depth = [&](std::size_t i) { return down.dot(fluid.position[i].head<3>().cast<double>()); };
     const double deepest =

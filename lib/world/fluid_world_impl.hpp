@@ -40,6 +40,13 @@ struct BodySurface {
     std::unique_ptr<SurfaceQuery> query;
     bool is_changed = false;       ///< added or reshaped since the last step
     std::optional<Pose> last_pose; ///< at the end of the last step, as the fluid had it
+
+    /// Radius about the centre of mass that holds all of it [m]; needs the query.
+    [[nodiscard]] double reach() const
+    {
+        const Aabb box = query->bounds();
+        return box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
+    }
 };
 
 /// Water that was asked for, before it is cut.

@@ -167,9 +167,10 @@ void FluidWorld::Impl::solve_velocities(const PressureSystem& system, double dt,
     });
     diagonal.resize(n);
     system.fluid_diagonal(diagonal);
+    const bool is_krylov = pressure.solver == PressureSettings::Solver::mprgp;
     if (is_strong()) {
         build_mobility(port);
-        preconditioner.build(system, mobility, diagonal);
+        if (is_krylov) preconditioner.build(system, mobility, diagonal);
         system.add_response_diagonal(mobility, diagonal);
     }
     const auto answer_impulses = [&](std::span<const Wrench> impulses, std::span<Twist> answers) {
@@ -177,7 +178,7 @@ void FluidWorld::Impl::solve_velocities(const PressureSystem& system, double dt,
     };
     const OwnerResponse response = answer_impulses;
     pressure_operator.bind(system, is_strong() ? &response : nullptr, owners());
-    if (is_strong()) pressure_operator.set_preconditioner(&preconditioner);
+    if (is_strong() && is_krylov) pressure_operator.set_preconditioner(&preconditioner);
     SolveGoal goal;
     goal.scale = dt / rho0;
     goal.tolerance =

@@ -8,6 +8,12 @@
 
 namespace flotsam {
 
+Eigen::Matrix<double, 6, 6> transposed_root(const Eigen::Matrix<double, 6, 6>& mobility)
+{
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(mobility);
+    return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+}
+
 void PressureSystem::velocity_change(std::span<const Scalar> x, std::span<Vec4> dv) const
 {
     workers_->for_each(size(), [&](std::size_t i) {
@@ -77,9 +83,7 @@ void PressureSystem::add_response_diagonal(std::span<const Eigen::Matrix<double,
     using Vec6d = Eigen::Matrix<double, 6, 1>;
     for (std::size_t owner = 0; owner < mobility.size(); ++owner) {
         if (mobility[owner].isZero(0)) continue;
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(mobility[owner]);
-        const Eigen::Matrix<double, 6, 6> root_t =
-            eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+        const Eigen::Matrix<double, 6, 6> root_t = transposed_root(mobility[owner]);
         Vec6d sums = Vec6d::Zero();
         for (std::uint32_t k = contacts_->start[owner]; k < contacts_->start[owner + 1]; ++k) {
             sums += (root_t * contacts_->row[k].cast<double>()).cwiseAbs();

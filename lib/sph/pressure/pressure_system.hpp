@@ -13,6 +13,9 @@ namespace flotsam {
 /// Answers impulses on the owners (walls and bodies) with the twist changes they cause; walls answer zero.
 using OwnerResponse = FunctionRef<void(std::span<const Wrench> impulses, std::span<Twist> twists)>;
 
+/// L^T of a mobility Y = L L^T, which may be singular.
+[[nodiscard]] Eigen::Matrix<double, 6, 6> transposed_root(const Eigen::Matrix<double, 6, 6>& mobility);
+
 /// The pressure system of one step. With x_i = dt p_i / rho_i^2 (per particle, >= 0) as unknown,
 ///
 ///     dv_i = -sum_j m (x_i + x_j) grad W_ij - x_i sum_b rho0 V_b grad W_ib        (= -M^-1 J^T lambda)

@@ -1,7 +1,6 @@
 #include "sph/pressure/response_preconditioner.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -21,10 +20,7 @@ void ResponsePreconditioner::build(const PressureSystem& system, std::span<const
     for (std::size_t owner = 0; owner < mobility.size(); ++owner) {
         if (mobility[owner].isZero(0)) continue;
         owners_.push_back(owner);
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(mobility[owner]);
-        const Eigen::Matrix<Scalar, 6, 6> root =
-            (eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose())
-                .cast<Scalar>();
+        const Eigen::Matrix<Scalar, 6, 6> root = transposed_root(mobility[owner]).cast<Scalar>();
         const std::size_t first = contacts.start[owner];
         system.workers().for_each(contacts.start[owner + 1] - first, [&](std::size_t r) {
             const std::size_t k = first + r, i = contacts.particle[k];
