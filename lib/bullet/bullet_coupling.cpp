@@ -55,6 +55,19 @@ struct BulletCoupling::Impl {
         fluid.prepare(bodies);
         return fluid.allowed_time_step();
     }
+    /// The fluid's part of a tick of `dt` seconds.
+    void step_fluid(double dt)
+    {
+        bodies.begin(dt, true);
+        allowed_step();
+        for (double left = dt; left > 0.0;) {
+            StepReport report = fluid.step(next_step(left, fluid.allowed_time_step()), bodies);
+            report.disagreement = std::exchange(disagreement, 0.0);
+            left -= report.dt;
+            if (on_step) on_step(report);
+        }
+        bodies.finish();
+    }
     void require_all_ours() const
     {
         require(fluid.body_count() == static_cast<int>(bodies.size()),
@@ -208,16 +221,13 @@ void BulletCoupling::detach()
 void BulletCoupling::before_tick(double dt)
 {
     require(dt > 0.0 && std::isfinite(dt), "a tick must be > 0 s and finite", dt);
-    impl_->is_stepping = true; // until the tick is over
-    impl_->bodies.begin(dt, true);
-    impl_->allowed_step();
-    for (double left = dt; left > 0.0;) {
-        StepReport report = impl_->fluid.step(next_step(left, impl_->fluid.allowed_time_step()), impl_->bodies);
-        report.disagreement = std::exchange(impl_->disagreement, 0.0);
-        left -= report.dt;
-        if (impl_->on_step) impl_->on_step(report);
+    impl_->is_stepping = true; // until the tick is over, which it is too when something throws
+    try {
+        impl_->step_fluid(dt);
+    } catch (...) {
+        impl_->is_stepping = false;
+        throw;
     }
-    impl_->bodies.finish();
 }
 
 void BulletCoupling::after_tick()

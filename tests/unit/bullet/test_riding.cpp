@@ -193,6 +193,25 @@ TEST_CASE("nothing is added or removed while a step runs", "[bullet][riding]")
     CHECK(coupling.number_of(cube) == 0);
 }
 
+TEST_CASE("what a callback throws comes out of stepSimulation and ends the step", "[bullet][riding]")
+{
+    BulletScene scene;
+    FluidWorld water(coarse());
+    add_tank(water);
+    BulletCoupling coupling(water, scene.world);
+    btRigidBody& cube = add_cube(scene, Vec3d(0.4, 0.4, 0.4));
+    coupling.add(cube);
+    bool throws = true;
+    coupling.attach([&](const StepReport&) {
+        if (throws) throw std::runtime_error("enough");
+    });
+    CHECK_THROWS_WITH(scene.step(0.004), "enough");
+    throws = false;
+    CHECK_NOTHROW(scene.step(0.004));
+    CHECK_NOTHROW(coupling.remove(cube));
+    CHECK(coupling.number_of(cube) == -1);
+}
+
 TEST_CASE("two waters and two Bullet worlds live side by side", "[bullet][riding]")
 {
     std::vector<double> heights;
