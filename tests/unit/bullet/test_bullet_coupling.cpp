@@ -22,6 +22,14 @@ TEST_CASE("steps fill a time exactly and without a sliver", "[bullet]")
     CHECK(shortest > (seconds > allowed ? 0.49 * allowed : 0.99 * seconds));
 }
 
+TEST_CASE("a step that single precision has rounded up is one step all the same", "[bullet]")
+{
+    const double allowed = 0.004, rounded = static_cast<double>(static_cast<float>(allowed));
+    REQUIRE(rounded > allowed);
+    CHECK(next_step(rounded, allowed) == rounded);
+    CHECK(next_step(1.001 * allowed, allowed) < allowed);
+}
+
 TEST_CASE("bodies get the numbers that they have in the fluid", "[bullet]")
 {
     BulletScene scene;
