@@ -36,6 +36,21 @@ btRigidBody& add_cube(BulletScene& scene, const Vec3d& position, double mass = 1
     return scene.add(info);
 }
 
+/// Water and Bullet in a tank, coupled.
+struct CoupledTank {
+    BulletScene scene;
+    FluidWorld water{coarse()};
+    BulletCoupling coupling{water, scene.world};
+
+    CoupledTank() { add_tank(water); }
+    btRigidBody& add(const Vec3d& position)
+    {
+        btRigidBody& cube = add_cube(scene, position);
+        coupling.add(cube);
+        return cube;
+    }
+};
+
 double height(const btRigidBody& body)
 {
     return static_cast<double>(body.getWorldTransform().getOrigin().z());
@@ -123,12 +138,9 @@ TEST_CASE("bodies that the water does not touch move as Bullet alone moves them,
 
 TEST_CASE("bodies are added, removed, put elsewhere and reshaped while the water is there", "[bullet][riding]")
 {
-    BulletScene scene;
-    FluidWorld water(coarse());
-    add_tank(water);
-    BulletCoupling coupling(water, scene.world);
-    btRigidBody& first = add_cube(scene, Vec3d(0.2, 0.2, 0.4));
-    coupling.add(first);
+    CoupledTank tank;
+    auto& [scene, water, coupling] = tank;
+    btRigidBody& first = tank.add(Vec3d(0.2, 0.2, 0.4));
     coupling.step_for(0.1);
     const std::size_t all = water.fluid().size();
 
@@ -174,63 +186,47 @@ TEST_CASE("bodies are added, removed, put elsewhere and reshaped while the water
 
 TEST_CASE("nothing is added or removed while a step runs", "[bullet][riding]")
 {
-    BulletScene scene;
-    FluidWorld water(coarse());
-    add_tank(water);
-    BulletCoupling coupling(water, scene.world);
-    btRigidBody& cube = add_cube(scene, Vec3d(0.4, 0.4, 0.4));
-    coupling.add(cube);
+    CoupledTank tank;
+    btRigidBody& cube = tank.add(Vec3d(0.4, 0.4, 0.4));
     int refused = 0;
-    coupling.attach([&](const StepReport&) {
+    tank.coupling.attach([&](const StepReport&) {
         try {
-            coupling.remove(cube);
+            tank.coupling.remove(cube);
         } catch (const std::logic_error& error) {
             refused += std::string(error.what()).find("while a step runs") != std::string::npos ? 1 : 0;
         }
     });
-    scene.step(0.004);
+    tank.scene.step(0.004);
     CHECK(refused >= 1);
-    CHECK(coupling.number_of(cube) == 0);
+    CHECK(tank.coupling.number_of(cube) == 0);
 }
 
 TEST_CASE("what a callback throws comes out of stepSimulation and ends the step", "[bullet][riding]")
 {
-    BulletScene scene;
-    FluidWorld water(coarse());
-    add_tank(water);
-    BulletCoupling coupling(water, scene.world);
-    btRigidBody& cube = add_cube(scene, Vec3d(0.4, 0.4, 0.4));
-    coupling.add(cube);
+    CoupledTank tank;
+    btRigidBody& cube = tank.add(Vec3d(0.4, 0.4, 0.4));
     bool throws = true;
-    coupling.attach([&](const StepReport&) {
+    tank.coupling.attach([&](const StepReport&) {
         if (throws) throw std::runtime_error("enough");
     });
-    CHECK_THROWS_WITH(scene.step(0.004), "enough");
+    CHECK_THROWS_WITH(tank.scene.step(0.004), "enough");
     throws = false;
-    CHECK_NOTHROW(scene.step(0.004));
-    CHECK_NOTHROW(coupling.remove(cube));
-    CHECK(coupling.number_of(cube) == -1);
+    CHECK_NOTHROW(tank.scene.step(0.004));
+    CHECK_NOTHROW(tank.coupling.remove(cube));
+    CHECK(tank.coupling.number_of(cube) == -1);
 }
 
 TEST_CASE("two waters and two Bullet worlds live side by side", "[bullet][riding]")
 {
-    std::vector<double> heights;
-    BulletScene scenes[2];
-    FluidWorld waters[2] = {FluidWorld(coarse()), FluidWorld(coarse())};
-    std::vector<std::unique_ptr<BulletCoupling>> couplings;
-    std::vector<btRigidBody*> cubes;
-    for (std::size_t k = 0; k < 2; ++k) {
-        add_tank(waters[k]);
-        cubes.push_back(&add_cube(scenes[k], Vec3d(0.4, 0.4, 0.45)));
-        couplings.push_back(std::make_unique<BulletCoupling>(waters[k], scenes[k].world));
-        couplings.back()->add(*cubes.back());
-    }
-    couplings[1]->attach();
+    CoupledTank tanks[2];
+    for (CoupledTank& tank : tanks) tank.add(Vec3d(0.4, 0.4, 0.45));
+    tanks[1].coupling.attach();
     for (int k = 0; k < 50; ++k) {
-        const double dt = couplings[0]->step(0.004).dt;
-        scenes[1].step(dt);
+        const double dt = tanks[0].coupling.step(0.004).dt;
+        tanks[1].scene.step(dt);
     }
-    CHECK(waters[0].time() == Approx(waters[1].time()));
-    CHECK(height(*cubes[0]) == Approx(height(*cubes[1])).margin(1e-5)); // the same world twice, stepped in two ways
-    CHECK(height(*cubes[0]) < 0.449);
+    CHECK(tanks[0].water.time() == Approx(tanks[1].water.time()));
+    CHECK(height(tanks[0].coupling.body(0)) ==
+          Approx(height(tanks[1].coupling.body(0))).margin(1e-5)); // the same world twice, stepped in two ways
+    CHECK(height(tanks[0].coupling.body(0)) < 0.449);
 }
