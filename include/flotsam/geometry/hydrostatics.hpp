@@ -17,8 +17,21 @@ struct Submerged {
 /// world. A face that lies in the plane counts as above it.
 [[nodiscard]] Submerged submerged_part(const TriangleMesh& closed, const Pose& pose, double water_level);
 
-/// The same in the plane y = 0, per metre of width: `volume` is the area [m^2] of the solid's cut below the water
-/// level, `waterplane_area` the length of the cut's water line [m], the centre has y = 0.
+/// Where the water plane cuts a solid: all its parts (both hulls of a catamaran), holes taken off.
+struct Waterplane {
+    double area = 0.0;                                       ///< [m^2]
+    Eigen::Vector2d centroid = Eigen::Vector2d::Zero();      ///< [m], world x and y: the centre of flotation
+    Eigen::Matrix2d second_moment = Eigen::Matrix2d::Zero(); ///< of (x, y)(x, y)^T about the centroid, world axes [m^4]
+};
+
+/// Exact for the closed mesh, by the divergence theorem on the field f(x, y) e_z: the integral of f over the waterplane
+/// is minus that of f n_z over the wetted surface, for f = 1, x, y, x^2, x y, y^2. `pose` places mesh points in the
+/// world. A face that lies in the plane counts as above it: the waterplane of a box that the water just covers is its
+/// top, that of a box which just touches the water is empty. All zeros where nothing is cut.
+[[nodiscard]] Waterplane waterplane(const TriangleMesh& closed, const Pose& pose, double water_level);
+
+/// The part below the water in the plane y = 0, per metre of width: `volume` is the area [m^2] of the solid's cut below
+/// the water level, `waterplane_area` the length of the cut's water line [m], the centre has y = 0.
 [[nodiscard]] Submerged submerged_section(const TriangleMesh& closed, const Pose& pose, double water_level);
 
 /// Height of the mesh's lowest vertex in the world [m].

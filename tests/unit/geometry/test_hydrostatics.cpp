@@ -2,6 +2,7 @@
 #include "flotsam/geometry/mass_properties.hpp"
 #include "flotsam/geometry/shapes.hpp"
 #include "support/catch.hpp"
+#include "unit/geometry/sample_meshes.hpp"
 
 using namespace flotsam;
 
@@ -14,33 +15,6 @@ double draft_of(const TriangleMesh& mesh, double density_ratio, const Quatd& ori
     const auto draft = equilibrium_draft(mesh, orientation, density_ratio * mass_properties(mesh).volume);
     REQUIRE(draft.has_value());
     return *draft;
-}
-
-/// y = (B/2)(1 - (2x/L)^2)(1 - (z/T)^2), -T <= z <= 0, closed by a deck at z = 0.
-TriangleMesh wigley_hull(double length, double breadth, double depth, int nx, int nz)
-{
-    TriangleMesh hull;
-    const auto half_breadth = [&](double x, double z) {
-        return 0.5 * breadth * (1 - std::pow(2 * x / length, 2)) * (1 - std::pow(z / depth, 2));
-    };
-    const auto vertex = [&](int i, int k, int side) {
-        const double x = length * (static_cast<double>(i) / nx - 0.5);
-        const double z = depth * (static_cast<double>(k) / nz - 1.0);
-        hull.vertices.emplace_back(x, side * half_breadth(x, z), z);
-        return static_cast<int>(hull.vertices.size()) - 1;
-    };
-    const auto quad = [&](int a, int b, int c, int d) {
-        hull.triangles.push_back({a, b, c});
-        hull.triangles.push_back({a, c, d});
-    };
-    for (int i = 0; i < nx; ++i) {
-        for (int k = 0; k < nz; ++k) {
-            quad(vertex(i, k, -1), vertex(i + 1, k, -1), vertex(i + 1, k + 1, -1), vertex(i, k + 1, -1));
-            quad(vertex(i + 1, k, 1), vertex(i, k, 1), vertex(i, k + 1, 1), vertex(i + 1, k + 1, 1));
-        }
-        quad(vertex(i, nz, -1), vertex(i + 1, nz, -1), vertex(i + 1, nz, 1), vertex(i, nz, 1));
-    }
-    return hull;
 }
 
 } // namespace
@@ -150,7 +124,7 @@ TEST_CASE("what is too heavy sinks, what displaces nothing lies on the water", "
 
 TEST_CASE("a Wigley hull at its waterline", "[geometry][hydrostatics]")
 {
-    const TriangleMesh hull = wigley_hull(2.0, 0.4, 0.25, 80, 80);
+    const TriangleMesh hull = test_meshes::wigley_hull(2.0, 0.4, 0.25, 80, 80);
     const Submerged part = submerged_part(hull, Pose{}, 0.0);
     // Flat facets on a hull with 80 stations: below 1e-3 of the closed form.
     CHECK(part.volume == Approx(4.0 / 9.0 * 2.0 * 0.4 * 0.25).epsilon(1e-3));
