@@ -1,0 +1,51 @@
+#pragma once
+
+#include "flotsam/geometry/flotation.hpp"
+#include "geometry/submerged_moments.hpp"
+
+#include <Eigen/Core>
+
+#include <cmath>
+
+namespace flotsam {
+
+/// A body in an attitude, at the level where it displaces its own mass. Lengths stand for energies over m g.
+struct Attitude {
+    Quatd orientation = Quatd::Identity();
+    double level = 0.0;                                  ///< of the water above the centre of mass [m]
+    double energy = 0.0;                                 ///< z_G - z_B [m]
+    Eigen::Vector2d slope = Eigen::Vector2d::Zero();     ///< of the energy by turns about world x and y [m]
+    Eigen::Matrix2d curvature = Eigen::Matrix2d::Zero(); ///< its second derivatives: metacentric heights [m]
+    Submerged submerged;                                 ///< about the centre of mass
+    Waterplane plane;                                    ///< likewise
+
+    /// Up, seen from the body.
+    [[nodiscard]] Vec3d up_body() const { return orientation.conjugate() * Vec3d::UnitZ(); }
+};
+
+/// Finds attitudes' levels; holds the body's mesh about its centre of mass.
+class FlotationSolver {
+  public:
+    /// Throws std::invalid_argument as flotation says.
+    explicit FlotationSolver(const FloatingBody& body);
+
+    [[nodiscard]] bool sinks() const { return displaced_ > whole_ * (1.0 + 1e-12); }
+    /// Cube root of the mesh's volume [m]: what lengths are measured by.
+    [[nodiscard]] double size() const { return std::cbrt(whole_); }
+    /// m g [N].
+    [[nodiscard]] double weight() const { return weight_; }
+    /// The body must not sink. Throws std::invalid_argument for a quaternion of no direction.
+    [[nodiscard]] Attitude at(const Quatd& orientation) const;
+    /// The same for a unit quaternion; `level_guess`: of the water above the centre of mass [m].
+    [[nodiscard]] Attitude at(const Quatd& orientation, double level_guess) const;
+    [[nodiscard]] Flotation flotation(const Attitude& attitude) const;
+
+  private:
+    TriangleMesh mesh_;
+    Vec3d center_of_mass_;
+    double displaced_;
+    double weight_;
+    double whole_ = 0.0;
+};
+
+} // namespace flotsam
