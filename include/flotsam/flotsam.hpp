@@ -1,6 +1,7 @@
 #pragma once
 
 /// Everything of flotsam that knows no rigid-body engine.
+#include "flotsam/geometry/equilibrium_poses.hpp"
 #include "flotsam/geometry/hydrostatics.hpp"
 #include "flotsam/geometry/load_mesh.hpp"
 #include "flotsam/geometry/mass_properties.hpp"
