@@ -1,10 +1,8 @@
 #include "flotsam/io/csv.hpp"
 
 #include "flotsam/core/contracts.hpp"
+#include "io/number_text.hpp"
 #include "io/output_file.hpp"
-
-#include <array>
-#include <charconv>
 
 namespace flotsam {
 
@@ -19,14 +17,6 @@ std::string quoted(const std::string& name)
         result += c;
     }
     return result + '"';
-}
-
-void append_number(std::string& line, double value)
-{
-    std::array<char, 32> digits{};
-    // Not printf: its decimal point follows the locale.
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 9);
-    line.append(digits.data(), end.ptr);
 }
 
 } // namespace
