@@ -6,7 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <fstream>
+#include <initializer_list>
 #include <string>
 #include <system_error>
 
@@ -23,13 +25,26 @@ void check(const std::error_code& error, const std::string& attempt)
     if (error) throw OutputError("cannot " + attempt + ": " + error.message());
 }
 
+/// A file that each output of ours of one kind has, and what is in it.
+struct Mark {
+    const char* file;
+    std::initializer_list<const char*> keys;
+};
+
 /// A name alone would do for most, but other programs write a report.json too, and what is ours is removed.
-bool is_report_of_ours(const fs::path& file)
+bool has_mark(const fs::path& directory, const Mark& mark)
 {
-    std::ifstream stream(file);
+    std::ifstream stream(directory / mark.file);
     if (!stream) return false;
     const auto report = nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
-    return report.is_object() && report.contains("version") && report.contains("particles") && report.contains("steps");
+    return report.is_object() &&
+           std::all_of(mark.keys.begin(), mark.keys.end(), [&](const char* key) { return report.contains(key); });
+}
+
+bool is_output_of_ours(const fs::path& directory)
+{
+    return has_mark(directory, {"report.json", {"version", "particles", "steps"}}) ||
+           has_mark(directory, {"hydrostatics.json", {"version", "mesh", "stable_poses"}});
 }
 
 void require_replaceable(const fs::path& target)
@@ -44,11 +59,11 @@ void require_replaceable(const fs::path& target)
     }
     const bool empty = fs::is_empty(target, error);
     check(error, "read the directory " + target.string());
-    if (!empty && !is_report_of_ours(target / "report.json")) {
+    if (!empty && !is_output_of_ours(target)) {
         throw InputError(
             "the output directory " + target.string() +
-            " holds something else than an output of flotsam (which has its report.json); give a new or an "
-            "empty directory");
+            " holds something else than an output of flotsam (which has its report.json or hydrostatics.json); give a "
+            "new or an empty directory");
     }
 }
 

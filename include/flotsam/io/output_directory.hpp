@@ -12,9 +12,9 @@ void write_text_atomically(const std::filesystem::path& file, std::string_view t
 /// A directory of results that appears whole or not at all: everything is written to a temporary directory beside the
 /// target, which takes the target's name on commit.
 ///
-/// An older output of flotsam (a directory whose report.json is one of ours) is replaced with all that is in it, an
-/// empty directory too; any other directory is never touched. Missing parents are made. Without commit or keep_partial
-/// the destructor removes what was written.
+/// An older output of flotsam (a directory whose report.json or hydrostatics.json is one of ours) is replaced with all
+/// that is in it, an empty directory too; any other directory is never touched. Missing parents are made. Without
+/// commit or keep_partial the destructor removes what was written.
 class OutputDirectory {
   public:
     /// Throws InputError when `target` is a file or a directory that is not ours to replace; OutputError when the

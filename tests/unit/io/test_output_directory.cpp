@@ -67,6 +67,19 @@ TEST_CASE("an older output is replaced whole, and only on commit", "[io][output]
     CHECK(scratch.entries() == 1);
 }
 
+TEST_CASE("an older table of hydrostatics is ours to replace as well", "[io][output]")
+{
+    const Scratch scratch;
+    fs::create_directory(scratch / "out");
+    put(scratch / "out/hydrostatics.json", R"({"version": "0.1.0", "mesh": "a.obj"})");
+    CHECK_THROWS_AS(OutputDirectory(scratch / "out"), InputError); // not all that ours has
+    put(scratch / "out/hydrostatics.json", R"({"version": "0.1.0", "mesh": "a.obj", "stable_poses": []})");
+    OutputDirectory out(scratch / "out");
+    put(out.path() / "report.json", kReport);
+    out.commit();
+    CHECK_FALSE(fs::exists(scratch / "out/hydrostatics.json"));
+}
+
 TEST_CASE("an empty directory is taken", "[io][output]")
 {
     const Scratch scratch;
