@@ -1,28 +1,16 @@
 #include "flotsam/scene/run_report.hpp"
 
-#include <nlohmann/json.hpp>
+#include "scene/json_numbers.hpp"
 
-#include <cmath>
 #include <sstream>
 
 namespace flotsam {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using scene::Json;
+using scene::number;
+using scene::vector;
 
-/// JSON has no NaN: null.
-Json number(double value)
-{
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-Json number(const std::optional<double>& value)
-{
-    return value ? number(*value) : Json(nullptr);
-}
-Json vector(const Vec3d& v)
-{
-    return Json::array({number(v.x()), number(v.y()), number(v.z())});
-}
 Json mean_and_max(const MeanAndMax& value)
 {
     return {{"mean", number(value.mean)}, {"max", number(value.max)}};
