@@ -1,5 +1,6 @@
 #include "cli/arguments.hpp"
 
+#include "cli/hydrostatics_arguments.hpp"
 #include "flotsam/version.hpp"
 
 #include <CLI/CLI.hpp>
@@ -19,6 +20,7 @@ Examples:
   flotsam run data/scenes/raft_2d.json --set bodies.raft.density=300 --set duration=2
   flotsam run data/scenes/dam_break.json --set output.vtk=true --set 'output.pictures={"width": 640, "height": 360}'
   flotsam check my_scene.json
+  flotsam hydrostatics data/meshes/hull.obj --density 400 --heel 0:5:90
 
 A run writes DIR/report.json (what happened, in numbers), DIR/history.csv (a row per frame) and, where the scene's
 "output" asks for them, DIR/particles.pvd and DIR/bodies.pvd for ParaView and DIR/pictures/*.png. An older output in DIR
@@ -80,8 +82,8 @@ std::string reason(const CLI::App& app, const CLI::ParseError& error, int argc, 
                 if (word.rfind('-', 0) == 0)
                     return "flotsam " + command->get_name() + " has no option " + word.substr(0, word.find('='));
     if (app.get_subcommands().empty())
-        return argc < 2 ? std::string("a command is missing: run or check")
-                        : std::string("there is no command \"") + argv[1] + "\"; there are run and check";
+        return argc < 2 ? std::string("a command is missing: run, check or hydrostatics")
+                        : std::string("there is no command \"") + argv[1] + "\"; there are run, check and hydrostatics";
     return error.what();
 }
 
@@ -96,6 +98,7 @@ Parsed parse_arguments(int argc, char** argv)
     app.footer(kFooter);
     add_run(app, arguments);
     add_check(app, arguments);
+    add_hydrostatics(app, arguments);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -103,12 +106,20 @@ Parsed parse_arguments(int argc, char** argv)
         std::cerr << "error: " << reason(app, error, argc, argv) << "; flotsam --help says what there is\n";
         return {std::nullopt, 2};
     }
-    const bool names_out = app.get_subcommand("run")->count("--out") > 0;
-    if (names_out && arguments.out.empty()) {
-        std::cerr << "error: --out must be the name of a directory and is empty\n";
+    const bool is_hydrostatics = arguments.verb == Arguments::Verb::hydrostatics;
+    const std::string fault = is_hydrostatics ? fault_between_options(arguments.hydrostatics) : std::string();
+    const bool names_out =
+        app.get_subcommand("run")->count("--out") + app.get_subcommand("hydrostatics")->count("--out") > 0;
+    const bool is_out_empty = names_out && arguments.out.empty();
+    if (!fault.empty() || is_out_empty) {
+        std::cerr << "error: " << (fault.empty() ? "--out must be the name of a directory and is empty" : fault)
+                  << "\n";
         return {std::nullopt, 2};
     }
-    if (!names_out) arguments.out = std::filesystem::path("out") / arguments.scene.stem();
+    if (!names_out) {
+        arguments.out = std::filesystem::path("out") / arguments.scene.stem();
+        if (is_hydrostatics) arguments.out += "-hydrostatics";
+    }
     return {arguments, 0};
 }
 

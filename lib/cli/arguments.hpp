@@ -1,5 +1,7 @@
 #pragma once
 
+#include "flotsam/scene/hydrostatics_report.hpp"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,9 +10,10 @@
 namespace flotsam::cli {
 
 struct Arguments {
-    enum class Verb { run, check } verb = Verb::run;
-    std::filesystem::path scene;
-    std::filesystem::path out; ///< of run; default out/SCENE
+    enum class Verb { run, check, hydrostatics } verb = Verb::run;
+    std::filesystem::path scene;      ///< or the mesh
+    std::filesystem::path out;        ///< default of run: out/SCENE, of hydrostatics: out/MESH-hydrostatics
+    HydrostaticsRequest hydrostatics; ///< of the verb of that name
     std::vector<std::string> overrides;
     int threads = 0;
     bool quiet = false;

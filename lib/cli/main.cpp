@@ -1,7 +1,9 @@
 #include "cli/arguments.hpp"
+#include "cli/hydrostatics_summary.hpp"
 #include "cli/progress.hpp"
 #include "cli/summary.hpp"
 #include "flotsam/core/contracts.hpp"
+#include "flotsam/io/output_error.hpp"
 
 #include <unistd.h>
 
@@ -47,16 +49,38 @@ void check(const Arguments& arguments)
     print_check(std::cout, check_scene(scene), arguments.scene);
 }
 
+void hydrostatics(const Arguments& arguments)
+{
+    const HydrostaticsReport report = report_hydrostatics(arguments.hydrostatics);
+    const std::string not_drawn = write_hydrostatics(report, arguments.out);
+    print_hydrostatics(std::cout, report, arguments.out);
+    if (!not_drawn.empty()) throw OutputError(not_drawn);
+}
+
+void obey(const Arguments& arguments)
+{
+    switch (arguments.verb) {
+    case Arguments::Verb::run:
+        return run(arguments);
+    case Arguments::Verb::check:
+        return check(arguments);
+    case Arguments::Verb::hydrostatics:
+        return hydrostatics(arguments);
+    }
+}
+
 int exit_code_of(const Arguments& arguments)
 {
     try {
-        arguments.verb == Arguments::Verb::run ? run(arguments) : check(arguments);
+        obey(arguments);
         return kDone;
     } catch (const InputError& error) {
         print_error(error.what());
         return kInputRefused;
     } catch (const std::bad_alloc&) {
-        print_error(arguments.scene.string() + ": the memory ran out; use a larger particle_spacing");
+        const bool has_spacing = arguments.verb != Arguments::Verb::hydrostatics;
+        print_error(arguments.scene.string() + ": the memory ran out" +
+                    (has_spacing ? "; use a larger particle_spacing" : ""));
         return kRunFailed;
     } catch (const std::exception& error) {
         print_error(error.what());

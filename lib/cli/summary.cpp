@@ -1,42 +1,14 @@
 #include "cli/summary.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include "cli/table.hpp"
+
 #include <iomanip>
 #include <ostream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 namespace flotsam::cli {
 namespace {
-
-using Row = std::vector<std::string>;
-
-std::string fixed(double value, int digits)
-{
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(digits) << value;
-    return text.str();
-}
-
-std::string with_sign(double value, int digits)
-{
-    return (value >= 0.0 ? "+" : "") + fixed(value, digits);
-}
-
-/// The first column to the left, numbers to the right.
-void print_table(std::ostream& out, const std::vector<Row>& rows)
-{
-    std::vector<std::size_t> widths(rows.front().size());
-    for (const Row& row : rows)
-        for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
-    for (const Row& row : rows) {
-        out << "  " << std::left << std::setw(static_cast<int>(widths[0])) << row[0] << std::right;
-        for (std::size_t k = 1; k < row.size(); ++k) out << "  " << std::setw(static_cast<int>(widths[k])) << row[k];
-        out << "\n";
-    }
-}
 
 Row draft_row(const BodyReport& body, const RunReport& report)
 {

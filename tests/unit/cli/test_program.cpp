@@ -1,40 +1,15 @@
 #include "../scene/scene_texts.hpp"
-#include "../scene/support_directory.hpp"
+#include "run_program.hpp"
 #include "support/catch.hpp"
-
-#include <sys/wait.h>
 
 #include <cstdlib>
 
 using namespace flotsam::testing;
 
-namespace {
-
-struct Outcome {
-    int code = -1;
-    std::string out, err;
-};
-
-/// Runs the program in a directory of its own.
-Outcome run_program(const TemporaryDirectory& directory, const std::string& arguments)
-{
-    const std::string command = "cd '" + directory.path().string() + "' && '" FLOTSAM_PROGRAM "' " + arguments +
-                                " >stdout.txt 2>stderr.txt </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, directory.read("stdout.txt"), directory.read("stderr.txt")};
-}
-
-bool contains(const std::string& text, const std::string& part)
-{
-    return text.find(part) != std::string::npos;
-}
-
-} // namespace
-
 TEST_CASE("help says what there is", "[cli]")
 {
     const TemporaryDirectory directory("flotsam_cli_help");
-    for (const char* arguments : {"--help", "run --help", "check --help"}) {
+    for (const char* arguments : {"--help", "run --help", "check --help", "hydrostatics --help"}) {
         const Outcome help = run_program(directory, arguments);
         CHECK(help.code == 0);
         CHECK(contains(help.out, "Example"));
