@@ -59,11 +59,18 @@ void FluidWorld::Impl::seed_where_dry(FluidSeed seed)
     seeds.push_back(std::move(seed));
 }
 
+void FluidWorld::Impl::require_still_if_at_rest(const Vec3d& velocity) const
+{
+    require(settings.start == FluidWorldSettings::Start::as_given || velocity.isZero(0.0),
+            "water that starts at rest must have a velocity of 0 [m/s]", velocity.norm());
+}
+
 void FluidWorld::add_block(const Aabb& block, const Vec3d& velocity)
 {
     require(!impl_->prepared, "water must be added before the first step");
     require(!block.empty(), "a block's min must not exceed its max [m]");
     require(velocity.allFinite(), "a block's velocity must be finite [m/s]");
+    impl_->require_still_if_at_rest(velocity);
     const bool is_flat = impl_->settings.dimensions == 2;
     const auto covers = [block, is_flat](const Vec3d& p) {
         return block.contains(is_flat ? Vec3d(p.x(), block.center().y(), p.z()) : p);
@@ -75,6 +82,7 @@ void FluidWorld::add_fluid_mesh(const TriangleMesh& closed, const Vec3d& velocit
 {
     require(!impl_->prepared, "water must be added before the first step");
     require(velocity.allFinite(), "the velocity of a mesh's water must be finite [m/s]");
+    impl_->require_still_if_at_rest(velocity);
     const auto query = std::make_shared<SurfaceQuery>(closed);
     const auto covers = [query](const Vec3d& p) { return query->bounds().contains(p) && query->inside(p); };
     impl_->seed_where_dry({fill_mesh(*query, impl_->spacing(), impl_->settings.dimensions), velocity, true, covers});
@@ -85,6 +93,7 @@ void FluidWorld::add_particles(std::span<const Vec3d> positions, const Vec3d& ve
     require(!impl_->prepared, "water must be added before the first step");
     for (const Vec3d& p : positions) require(p.allFinite(), "particle positions must be finite [m]");
     require(velocity.allFinite(), "the velocity of particles must be finite [m/s]");
+    impl_->require_still_if_at_rest(velocity);
     impl_->seeds.push_back({{positions.begin(), positions.end()}, velocity, false, {}});
 }
 
@@ -133,10 +142,17 @@ void FluidWorld::prepare(Bodies& bodies)
     impl_->prepare(bodies);
 }
 
+/// Pressure forces are explicit in the direction that they act in: a packing under pressure p answers sideways with
+/// frequencies of about sqrt(p / rho) / d, and comes apart where they are not resolved. Still tanks of 40 layers hold
+/// together at 0.5 and come apart at 0.6, in 2-D and 3-D, with either source.
+double FluidWorld::Impl::pressure_time_step() const
+{
+    constexpr double kPressureStep = 0.45;
+    return kPressureStep * spacing() / std::sqrt(max_pressure / settings.rest_density);
+}
+
 double FluidWorld::allowed_time_step() const
 {
-    // Still tanks of 40 layers hold together at 0.5 and come apart at 0.6, in 2-D and 3-D, with either source.
-    constexpr double kPressureStep = 0.45;
     const FluidWorldSettings& s = impl_->settings;
     double dt = s.max_time_step;
     // Speed at the end of a step that gravity accelerates all the way: v + g dt.
@@ -144,11 +160,7 @@ double FluidWorld::allowed_time_step() const
     const double g = s.gravity.norm();
     const double v = impl_->max_speed;
     if (v > 0.0 || g > 0.0) dt = std::min(dt, 2.0 * reach / (v + std::sqrt(v * v + 4.0 * g * reach)));
-    // Pressure forces are explicit in the direction that they act in: a packing under pressure p answers sideways with
-    // frequencies of about sqrt(p / rho) / d, and comes apart where they are not resolved.
-    if (impl_->max_pressure > 0.0) {
-        dt = std::min(dt, kPressureStep * s.particle_spacing / std::sqrt(impl_->max_pressure / s.rest_density));
-    }
+    if (impl_->max_pressure > 0.0) dt = std::min(dt, impl_->pressure_time_step());
     if (s.kinematic_viscosity > 0.0) {
         dt =
             std::min(dt, 0.125 * s.particle_spacing * s.particle_spacing / s.kinematic_viscosity); // Morris et al. 1997

@@ -132,6 +132,10 @@ struct FluidWorld::Impl {
     [[nodiscard]] double spacing() const { return settings.particle_spacing; }
     [[nodiscard]] double support() const { return static_cast<double>(kernel.support()); }
 
+    // fluid_world.cpp
+    void require_still_if_at_rest(const Vec3d& velocity) const;
+    [[nodiscard]] double pressure_time_step() const;
+
     // readings.cpp
     enum class Readable { any, free, bulk };
     [[nodiscard]] Readable readable(std::size_t i) const;
@@ -160,6 +164,11 @@ struct FluidWorld::Impl {
     void guard_relaxation();
     [[nodiscard]] bool in_solid(const Vec3d& point) const;
     [[nodiscard]] bool in_body(std::size_t k, const Pose& pose, const Vec3d& point) const;
+
+    // settle.cpp
+    void settle();
+    [[nodiscard]] double settle_round(double dt);
+    [[nodiscard]] bool is_carried(std::size_t i) const;
 
     // change_bodies.cpp
     void require_no_step() const;

@@ -54,6 +54,7 @@ void FluidWorld::Impl::prepare(Bodies& port)
     guard.build(surfaces, spacing(), workers);
     place_body_samples();
     relax(60);
+    if (settings.start == FluidWorldSettings::Start::at_rest) settle();
 }
 
 void FluidWorld::Impl::choose_wall_sides()
