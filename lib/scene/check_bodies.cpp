@@ -193,6 +193,17 @@ void check_bounds_of_walls(const SceneFile& scene, const PreparedScene& prepared
         refuse(scene, body.name, " is outside the tank, beside or below all walls");
 }
 
+void check_walls(const SceneFile& scene, const PreparedScene& prepared, const std::vector<Tank>& tanks,
+                 const PlacedBody& body, double tolerance)
+{
+    for (const Tank& tank : tanks)
+        if (tank.holds_water)
+            check_container(scene, tank, body, tolerance);
+        else
+            check_obstacle(scene, tank, body, tolerance);
+    check_bounds_of_walls(scene, prepared, body);
+}
+
 // -- other bodies -------------------------------------------------------------------------------------------------
 
 void check_pair(const SceneFile& scene, const PlacedBody& a, const PlacedBody& b, double tolerance)
@@ -205,6 +216,12 @@ void check_pair(const SceneFile& scene, const PlacedBody& a, const PlacedBody& b
 
 } // namespace
 
+void check_within_walls(const SceneFile& scene, const PreparedScene& prepared, const PreparedBody& body)
+{
+    check_walls(scene, prepared, tanks_of(scene, prepared), PlacedBody(body, scene),
+                kTouching * scene.particle_spacing);
+}
+
 void check_bodies(const SceneFile& scene, const PreparedScene& prepared)
 {
     const double tolerance = kTouching * scene.particle_spacing;
@@ -212,12 +229,7 @@ void check_bodies(const SceneFile& scene, const PreparedScene& prepared)
     for (const PreparedBody& body : prepared.bodies) bodies.emplace_back(body, scene);
     const std::vector<Tank> tanks = tanks_of(scene, prepared);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
-        for (const Tank& tank : tanks)
-            if (tank.holds_water)
-                check_container(scene, tank, bodies[k], tolerance);
-            else
-                check_obstacle(scene, tank, bodies[k], tolerance);
-        check_bounds_of_walls(scene, prepared, bodies[k]);
+        check_walls(scene, prepared, tanks, bodies[k], tolerance);
         for (std::size_t other = 0; other < k; ++other) check_pair(scene, bodies[other], bodies[k], tolerance);
     }
 }

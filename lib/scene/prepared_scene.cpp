@@ -118,6 +118,7 @@ void check_reach(const SceneFile& scene, const PreparedScene& prepared)
 PreparedScene prepare_and_check(const SceneFile& scene)
 {
     PreparedScene prepared = prepare_scene(scene);
+    if (scene.start == FluidWorldSettings::Start::at_rest) float_bodies(scene, prepared);
     check_bodies(scene, prepared);
     check_reach(scene, prepared);
     check_fluid(scene, prepared);

@@ -33,6 +33,12 @@ struct PreparedWall {
     std::string name; ///< for sentences: walls[0] ("basin")
 };
 
+/// Whether water comes to rest level, as drafts are measured.
+[[nodiscard]] inline bool is_level(const Vec3d& gravity)
+{
+    return gravity.z() < 0.0 && gravity.head<2>().norm() < 1e-6 * gravity.norm();
+}
+
 struct PreparedScene {
     std::vector<SceneBlock> blocks; ///< cut by the box wall
     std::vector<TriangleMesh> fluid_meshes;
@@ -50,6 +56,13 @@ struct PreparedScene {
 
 /// A body of the scene, its meshes loaded and checked; throws InputError.
 [[nodiscard]] PreparedBody prepare_body(const SceneFile& scene, std::size_t number, PreparedScene& prepared);
+
+/// Moves bodies of a scene that starts at rest to the height at which they float, and notes it; says of those that
+/// float and are not moved why.
+void float_bodies(const SceneFile& scene, PreparedScene& prepared);
+
+/// Refuses a body that is outside the tank or overlaps a wall, by an InputError.
+void check_within_walls(const SceneFile& scene, const PreparedScene& prepared, const PreparedBody& body);
 
 /// Refuses bodies that are outside the tank or overlap a wall or each other, by an InputError.
 void check_bodies(const SceneFile& scene, const PreparedScene& prepared);

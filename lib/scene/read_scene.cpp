@@ -3,6 +3,7 @@
 #include "scene/history_columns.hpp"
 #include "scene/read_joints.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -81,6 +82,17 @@ SceneFluid read_the_fluid(const JsonNode& node, const ReadContext& context)
     return read_fluid(fluids.front(), context);
 }
 
+FluidWorldSettings::Start read_start(const JsonNode& node, const SceneFluid& fluid)
+{
+    using Start = FluidWorldSettings::Start;
+    const Start start = std::array{Start::as_given, Start::at_rest}[node.one_of({"as_given", "at_rest"})];
+    const auto flows = [](const auto& part) { return !part.velocity.isZero(0.0); };
+    if (start == Start::at_rest && (std::any_of(fluid.blocks.begin(), fluid.blocks.end(), flows) ||
+                                    std::any_of(fluid.meshes.begin(), fluid.meshes.end(), flows)))
+        node.refuse_value("must be \"as_given\" for fluid with a velocity");
+    return start;
+}
+
 SceneProbe read_probe(const JsonNode& node, const ReadContext& context)
 {
     const JsonObject object(node, {"name", "pressure", "level"});
@@ -143,7 +155,7 @@ SceneFile read_root(const Json& document, const std::filesystem::path& file)
 {
     const JsonObject root(JsonNode(document, file.string(), ""),
                           {"flotsam", "dimensions", "particle_spacing", "gravity", "duration", "time_step", "kernel",
-                           "pressure", "fluids", "walls", "bodies", "joints", "probes", "output"});
+                           "pressure", "start", "fluids", "walls", "bodies", "joints", "probes", "output"});
     read_version(root);
     SceneFile scene;
     scene.file = file;
@@ -160,6 +172,7 @@ SceneFile read_root(const Json& document, const std::filesystem::path& file)
         scene.kernel = std::array{KernelKind::quintic, KernelKind::cubic}[node->one_of({"quintic", "cubic"})];
     if (const auto node = root.find("pressure")) scene.pressure = read_pressure(*node);
     scene.fluid = read_the_fluid(root.required("fluids"), context);
+    if (const auto node = root.find("start")) scene.start = read_start(*node, scene.fluid);
     for (const JsonNode& node : root.list("walls")) scene.walls.push_back(read_wall(node, context));
     std::set<std::string> names;
     for (const JsonNode& node : root.list("bodies")) {

@@ -13,12 +13,6 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// A water line is a median of many levels: not one for each step.
 constexpr int kDraftsMeasured = 32;
 
-/// Whether water comes to rest level, as drafts are measured.
-bool is_level(const Vec3d& gravity)
-{
-    return gravity.z() < 0.0 && gravity.head<2>().norm() < 1e-6 * gravity.norm();
-}
-
 void add_seconds(StageSeconds& sum, const StageSeconds& step)
 {
     sum.bodies += step.bodies;

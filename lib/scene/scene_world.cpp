@@ -20,6 +20,7 @@ FluidWorldSettings fluid_settings(const SceneFile& scene, int threads)
     settings.kinematic_viscosity = scene.fluid.kinematic_viscosity;
     settings.kernel = scene.kernel;
     settings.pressure = scene.pressure;
+    settings.start = scene.start;
     settings.max_time_step = scene.max_time_step;
     settings.cfl = scene.cfl;
     settings.threads = threads;

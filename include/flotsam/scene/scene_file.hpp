@@ -141,6 +141,8 @@ struct SceneFile {
     double cfl = 0.4;                       ///< time_step.cfl
     KernelKind kernel = KernelKind::quintic;
     PressureSettings pressure;
+    /// at_rest: fluid settled around the bodies, and those that float put to their equilibrium height first
+    FluidWorldSettings::Start start = FluidWorldSettings::Start::as_given;
     SceneFluid fluid;
     std::vector<SceneWall> walls;
     std::vector<SceneBody> bodies;

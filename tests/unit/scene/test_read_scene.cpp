@@ -35,6 +35,7 @@ TEST_CASE("a scene is read with its defaults", "[scene]")
     CHECK(scene.max_time_step == 0.004);
     CHECK(scene.cfl == 0.4);
     CHECK(scene.pressure.source == PressureSettings::Source::split);
+    CHECK(scene.start == FluidWorldSettings::Start::as_given);
     CHECK(scene.fluid.density == 1000.0);
     REQUIRE(scene.fluid.blocks.size() == 1);
     CHECK(scene.fluid.blocks[0].box.max == Vec3d(1, 1, 0.4));
@@ -161,6 +162,8 @@ TEST_CASE("bad scenes are refused with the place and what is allowed", "[scene]"
         {"\"crate\"", "\"\"", {"bodies[0].name must be a text"}},
         {"\"duration\"", "\"dimensions\": 4, \"duration\"", {"dimensions must be 2 or 3"}},
         {"\"duration\"", "\"dimensions\": 2.5, \"duration\"", {"dimensions must be 2 or 3"}},
+        {"\"duration\"", "\"start\": \"still\", \"duration\"", {"start must be", "at_rest", "given \"still\""}},
+        {"\"duration\"", "\"start\": true, \"duration\"", {"start must be", "as_given", "given true"}},
         {"\"duration\"", "\"output\": null, \"duration\"", {"output must be an object"}},
     }));
     check_contains(refusal_of(changed(kCrate, each.from, each.to)), each.parts);
@@ -180,6 +183,11 @@ TEST_CASE("settings out of their range are refused", "[scene]")
     CHECK_FALSE(refusal_of(kCrate, {"output.frames_per_second=0"}).empty());
     CHECK_FALSE(refusal_of(kCrate, {"output.pictures.width=0"}).empty());
     CHECK(refusal_of(kCrate, {"output.pictures=true"}).empty());
+    CHECK(refusal_of(kCrate, {"start=as_given"}).empty());
+    CHECK(refusal_of(kCrate, {"start=at_rest"}).empty());
+    check_contains(refusal_of(kCrate, {"start=at_rest", "fluids.0.blocks.0.velocity=[1,0,0]"}),
+                   {"start must be \"as_given\" for fluid with a velocity"});
+    CHECK(refusal_of(kCrate, {"start=at_rest", "fluids.0.blocks.0.velocity=[0,0,0]"}).empty());
     CHECK_FALSE(refusal_of(kCrate, {"bodies.crate.lock=[\"q\"]"}).empty());
     CHECK_FALSE(refusal_of(kCrate, {"bodies.crate.motion=still"}).empty());
     CHECK_FALSE(refusal_of(kCrate, {"bodies.crate.inertia=[1,1,3]"}).empty());
