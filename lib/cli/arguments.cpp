@@ -21,6 +21,7 @@ Examples:
   flotsam run data/scenes/dam_break.json --set output.vtk=true --set 'output.pictures={"width": 640, "height": 360}'
   flotsam check my_scene.json
   flotsam hydrostatics data/meshes/hull.obj --density 400 --heel 0:5:90
+  flotsam validate --quick
 
 A run writes DIR/report.json (what happened, in numbers), DIR/history.csv (a row per frame) and, where the scene's
 "output" asks for them, DIR/particles.pvd and DIR/bodies.pvd for ParaView and DIR/pictures/*.png. An older output in DIR
@@ -49,15 +50,21 @@ void add_scene(CLI::App& command, Arguments& arguments, const char* file)
         ->take_all();
 }
 
+void add_out_and_threads(CLI::App& command, Arguments& arguments, const char* out)
+{
+    command.add_option("--out", arguments.out, out)->type_name("DIR");
+    command
+        .add_option("--threads", arguments.threads,
+                    "Threads to use, from 1 to 1024 [all the machine has]. Results do not depend on it")
+        ->type_name("N")
+        ->check(CLI::Validator(&thread_fault, ""));
+}
+
 void add_run(CLI::App& app, Arguments& arguments)
 {
     CLI::App* run = app.add_subcommand("run", "Run a scene and record it");
     add_scene(*run, arguments, "Scene file (JSON)");
-    run->add_option("--out", arguments.out, "Directory of the results [out/ and the scene's name]")->type_name("DIR");
-    run->add_option("--threads", arguments.threads,
-                    "Threads to use, from 1 to 1024 [all the machine has]. Results do not depend on it")
-        ->type_name("N")
-        ->check(CLI::Validator(&thread_fault, ""));
+    add_out_and_threads(*run, arguments, "Directory of the results [out/ and the scene's name]");
     run->add_flag("--quiet,-q", arguments.quiet, "Print nothing but errors");
     run->footer("Example:\n  flotsam run data/scenes/cube_in_tank.json --out out/cube --threads 2");
     run->callback([&arguments] { arguments.verb = Arguments::Verb::run; });
@@ -73,6 +80,26 @@ void add_check(CLI::App& app, Arguments& arguments)
     check->callback([&arguments] { arguments.verb = Arguments::Verb::check; });
 }
 
+void add_validate(CLI::App& app, Arguments& arguments)
+{
+    CLI::App* validate = app.add_subcommand("validate", "Compare the simulation with theory and experiment");
+    validate->add_option("NAME", arguments.cases, "Cases to run [all]");
+    validate->add_flag("--quick", arguments.quick, "Coarser, and fewer cases: minutes instead of an hour");
+    add_out_and_threads(*validate, arguments, "Directory of the report [out/validation]");
+    validate->footer("Example:\n  flotsam validate square_log righting_arm --out out/validation\n\n"
+                     "Ends with 1 if a check lies outside its band.");
+    validate->callback([&arguments] { arguments.verb = Arguments::Verb::validate; });
+}
+
+/// Of the directory of results in out/.
+std::filesystem::path default_name(const Arguments& arguments)
+{
+    std::filesystem::path name = arguments.scene.stem();
+    if (arguments.verb == Arguments::Verb::validate) name = "validation";
+    if (arguments.verb == Arguments::Verb::hydrostatics) name += "-hydrostatics";
+    return name;
+}
+
 /// What is wrong with the command line; CLI11 does not say which word it was.
 std::string reason(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv)
 {
@@ -82,8 +109,9 @@ std::string reason(const CLI::App& app, const CLI::ParseError& error, int argc, 
                 if (word.rfind('-', 0) == 0)
                     return "flotsam " + command->get_name() + " has no option " + word.substr(0, word.find('='));
     if (app.get_subcommands().empty())
-        return argc < 2 ? std::string("a command is missing: run, check or hydrostatics")
-                        : std::string("there is no command \"") + argv[1] + "\"; there are run, check and hydrostatics";
+        return argc < 2 ? std::string("a command is missing: run, check, hydrostatics or validate")
+                        : std::string("there is no command \"") + argv[1] +
+                              "\"; there are run, check, hydrostatics and validate";
     return error.what();
 }
 
@@ -99,6 +127,7 @@ Parsed parse_arguments(int argc, char** argv)
     add_run(app, arguments);
     add_check(app, arguments);
     add_hydrostatics(app, arguments);
+    add_validate(app, arguments);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -108,18 +137,15 @@ Parsed parse_arguments(int argc, char** argv)
     }
     const bool is_hydrostatics = arguments.verb == Arguments::Verb::hydrostatics;
     const std::string fault = is_hydrostatics ? fault_between_options(arguments.hydrostatics) : std::string();
-    const bool names_out =
-        app.get_subcommand("run")->count("--out") + app.get_subcommand("hydrostatics")->count("--out") > 0;
+    const CLI::Option* out = app.get_subcommands().front()->get_option_no_throw("--out");
+    const bool names_out = out != nullptr && out->count() > 0;
     const bool is_out_empty = names_out && arguments.out.empty();
     if (!fault.empty() || is_out_empty) {
         std::cerr << "error: " << (fault.empty() ? "--out must be the name of a directory and is empty" : fault)
                   << "\n";
         return {std::nullopt, 2};
     }
-    if (!names_out) {
-        arguments.out = std::filesystem::path("out") / arguments.scene.stem();
-        if (is_hydrostatics) arguments.out += "-hydrostatics";
-    }
+    if (!names_out) arguments.out = std::filesystem::path("out") / default_name(arguments);
     return {arguments, 0};
 }
 

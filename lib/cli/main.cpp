@@ -2,6 +2,7 @@
 #include "cli/hydrostatics_summary.hpp"
 #include "cli/progress.hpp"
 #include "cli/summary.hpp"
+#include "cli/validate.hpp"
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/io/output_error.hpp"
 
@@ -57,23 +58,28 @@ void hydrostatics(const Arguments& arguments)
     if (!not_drawn.empty()) throw OutputError(not_drawn);
 }
 
-void obey(const Arguments& arguments)
+ExitCode obey(const Arguments& arguments)
 {
     switch (arguments.verb) {
     case Arguments::Verb::run:
-        return run(arguments);
+        run(arguments);
+        break;
     case Arguments::Verb::check:
-        return check(arguments);
+        check(arguments);
+        break;
     case Arguments::Verb::hydrostatics:
-        return hydrostatics(arguments);
+        hydrostatics(arguments);
+        break;
+    case Arguments::Verb::validate:
+        return validate(std::cout, arguments) == 0 ? kDone : kRunFailed;
     }
+    return kDone;
 }
 
 int exit_code_of(const Arguments& arguments)
 {
     try {
-        obey(arguments);
-        return kDone;
+        return obey(arguments);
     } catch (const InputError& error) {
         print_error(error.what());
         return kInputRefused;

@@ -1,9 +1,11 @@
 #include "flotsam/core/contracts.hpp"
-#include "flotsam/geometry/hydrostatics.hpp"
+#include "flotsam/geometry/equilibrium_poses.hpp"
 #include "scene/prepared_scene.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <sstream>
 
@@ -15,14 +17,36 @@ Aabb reach_of(const PreparedBody& body)
     return bounds(transformed(body.mesh, body.start));
 }
 
-/// Where the body floats in water whose surface is at `level`, turned as it is; nothing for one that sinks.
-std::optional<Pose> pose_afloat(const PreparedBody& body, double water_density, double level)
+/// As the search for a stable pose sees it. In 2-D a log that is so long that it turns in the plane only.
+FloatingBody floating(const PreparedBody& body, const SceneFile& scene)
 {
-    const std::optional<double> draft = equilibrium_draft(body.mesh, body.start.orientation, body.mass / water_density);
-    if (!draft) return std::nullopt;
-    Pose afloat = body.start;
-    afloat.position.z() += level - *draft - lowest_point(body.mesh, body.start);
-    return afloat;
+    FloatingBody result{body.mesh, body.mass, Vec3d::Zero(), scene.fluid.density, -scene.gravity.z()};
+    if (scene.dimensions == 3) return result;
+    const Vec3d size = bounds(body.mesh).size();
+    const double stretch = 10.0 * std::max(size.x(), size.z()) / size.y();
+    for (Vec3d& vertex : result.mesh.vertices) vertex.y() *= stretch;
+    result.mass *= stretch;
+    return result;
+}
+
+/// Where the body may float in water whose surface is at `level`, the best first: the stable pose that it comes to from
+/// the one that it is given, unless it may not turn about both horizontal axes, and its height as it is turned. Empty
+/// for one that sinks.
+std::vector<Pose> poses_afloat(const PreparedBody& body, const std::array<bool, 6>& lock, const SceneFile& scene,
+                               double level)
+{
+    const FloatingBody afloat = floating(body, scene);
+    const Quatd& given = body.start.orientation;
+    const bool turns = scene.dimensions == 2 ? !lock[4] : !lock[3] && !lock[4];
+    std::vector<Pose> poses;
+    try {
+        if (turns)
+            if (const auto stable = settled_pose(afloat, given)) poses.push_back(stable->flotation.pose);
+    } catch (const NoEquilibrium&) { // as it is turned, then
+    }
+    if (const auto held = flotation(afloat, given)) poses.push_back(held->pose);
+    for (Pose& pose : poses) pose.position += Vec3d(body.start.position.x(), body.start.position.y(), level);
+    return poses;
 }
 
 /// Top of the water that the middle of `body` stands over or in: that of the highest block or mesh, of those that reach
@@ -94,25 +118,31 @@ std::string float_body(std::size_t k, const SceneFile& scene, PreparedScene& pre
     const std::optional<double> level = level_at(prepared, reach_of(body));
     if (!level) return "no block or mesh of fluid is under its middle";
     const Pose given = body.start;
-    const std::optional<Pose> afloat = pose_afloat(body, scene.fluid.density, *level);
-    if (!afloat) return {};
-    body.start = *afloat;
     std::string obstacle;
-    if (const PreparedBody* other = neighbour_of(k, scene, prepared))
-        obstacle = other->name;
-    else if (!is_within_walls(scene, prepared, body))
-        obstacle = "a wall";
-    if (obstacle.empty()) return {};
+    for (const Pose& pose : poses_afloat(body, scene.bodies[k].lock, scene, *level)) {
+        body.start = pose;
+        const PreparedBody* other = neighbour_of(k, scene, prepared);
+        if (other == nullptr && is_within_walls(scene, prepared, body)) return {};
+        obstacle = "where it would float it meets " + (other != nullptr ? other->name : "a wall");
+    }
     body.start = given;
-    return "where it would float it meets " + obstacle;
+    return obstacle;
 }
 
-std::string note_of_move(const PreparedBody& body, double up)
+/// Empty where it stands as given.
+std::string note_of_move(const PreparedBody& body, const Pose& given, double spacing)
 {
+    const double up = body.start.position.z() - given.position.z();
+    const double turn = given.orientation.angularDistance(body.start.orientation) * 180.0 / std::numbers::pi;
+    const bool rises = std::abs(up) > 1e-6 * spacing, turns = turn > 1e-3;
+    if (!rises && !turns) return {};
     std::ostringstream note;
     note.precision(4);
-    note << body.name << " was moved " << (up > 0.0 ? "up" : "down") << " by " << 1000.0 * std::abs(up)
-         << " mm to the height at which it floats";
+    note << body.name << " was ";
+    if (rises) note << "moved " << (up > 0.0 ? "up" : "down") << " by " << 1000.0 * std::abs(up) << " mm";
+    if (rises && turns) note << " and ";
+    if (turns) note << "turned by " << turn << " degrees";
+    note << " to where it floats";
     return note.str();
 }
 
@@ -125,13 +155,13 @@ void float_bodies(const SceneFile& scene, PreparedScene& prepared)
         const PreparedBody& body = prepared.bodies[k];
         const bool floats = body.mass < scene.fluid.density * body.volume;
         if (scene.bodies[k].motion != SceneBody::Motion::dynamic || !floats) continue;
-        const double given = body.start.position.z();
+        const Pose given = body.start;
         const std::string obstacle = float_body(k, scene, prepared);
-        const double up = body.start.position.z() - given;
+        const std::string note = note_of_move(body, given, scene.particle_spacing);
         if (!obstacle.empty())
             prepared.notes.push_back(body.name + " stays as given in a scene that starts at rest: " + obstacle);
-        else if (std::abs(up) > 1e-6 * scene.particle_spacing)
-            prepared.notes.push_back(note_of_move(body, up));
+        else if (!note.empty())
+            prepared.notes.push_back(note);
     }
 }
 

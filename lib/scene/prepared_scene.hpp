@@ -57,8 +57,8 @@ struct PreparedScene {
 /// A body of the scene, its meshes loaded and checked; throws InputError.
 [[nodiscard]] PreparedBody prepare_body(const SceneFile& scene, std::size_t number, PreparedScene& prepared);
 
-/// Moves bodies of a scene that starts at rest to the height at which they float, and notes it; says of those that
-/// float and are not moved why.
+/// Puts bodies of a scene that starts at rest into the stable pose in which they float, and notes it; says of those
+/// that float and are not moved why.
 void float_bodies(const SceneFile& scene, PreparedScene& prepared);
 
 /// Refuses a body that is outside the tank or overlaps a wall, by an InputError.

@@ -141,7 +141,7 @@ struct SceneFile {
     double cfl = 0.4;                       ///< time_step.cfl
     KernelKind kernel = KernelKind::quintic;
     PressureSettings pressure;
-    /// at_rest: fluid settled around the bodies, and those that float put to their equilibrium height first
+    /// at_rest: fluid settled around the bodies, and those that float put into their stable pose first
     FluidWorldSettings::Start start = FluidWorldSettings::Start::as_given;
     SceneFluid fluid;
     std::vector<SceneWall> walls;

@@ -9,7 +9,7 @@ using namespace flotsam::testing;
 TEST_CASE("help says what there is", "[cli]")
 {
     const TemporaryDirectory directory("flotsam_cli_help");
-    for (const char* arguments : {"--help", "run --help", "check --help", "hydrostatics --help"}) {
+    for (const char* arguments : {"--help", "run --help", "check --help", "hydrostatics --help", "validate --help"}) {
         const Outcome help = run_program(directory, arguments);
         CHECK(help.code == 0);
         CHECK(contains(help.out, "Example"));

@@ -5,6 +5,8 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 using namespace flotsam;
 using namespace flotsam::testing;
@@ -29,6 +31,9 @@ bool has_note(const std::vector<std::string>& notes, const std::string& part)
                        [&](const std::string& note) { return note.find(part) != std::string::npos; });
 }
 
+/// Cubes of half the water's density would not stay upright.
+const std::string kUpright = R"(bodies.crate.lock=["rx","ry"])";
+
 double height(const scene::PreparedScene& scene, std::size_t body = 0)
 {
     return scene.bodies.at(body).start.position.z();
@@ -36,8 +41,8 @@ double height(const scene::PreparedScene& scene, std::size_t body = 0)
 
 std::string box(const std::string& name, const std::string& position, const std::string& rest)
 {
-    return R"({"name": ")" + name + R"(", "shape": {"box": [0.2, 0.2, 0.2]}, "position": )" + position + ", " + rest +
-           "}";
+    return R"({"name": ")" + name + R"(", "shape": {"box": [0.2, 0.2, 0.2]}, "lock": ["rx", "ry"], "position": )" +
+           position + ", " + rest + "}";
 }
 
 } // namespace
@@ -46,24 +51,54 @@ TEST_CASE("in a scene that starts at rest bodies stand at their exact drafts", "
 {
     // A cube of half the water's density has half of its 0.2 m under water that is 0.4 m deep.
     for (const char* position : {"[0.5,0.5,0.8]", "[0.5,0.5,0.2]"}) { // above the water and deep in it
-        const std::vector<std::string> there{std::string("bodies.crate.position=") + position};
+        const std::vector<std::string> there{std::string("bodies.crate.position=") + position, kUpright};
         const auto scene = prepared(kCrate, there);
         CHECK(height(scene) == Approx(0.4).margin(1e-9)); // rounding
         CHECK(scene.bodies[0].start.position.head<2>() == Eigen::Vector2d(0.5, 0.5));
         CHECK(has_note(scene.notes, "bodies[0] (\"crate\") was moved"));
         CHECK(height(scene::prepare_and_check(parsed(kCrate, there))) != Approx(0.4)); // only if it is asked for
     }
-    CHECK(has_note(prepared(kCrate, {"bodies.crate.position=[0.5,0.5,0.8]"}).notes, "moved down by 400 mm"));
-    CHECK(has_note(prepared(kCrate, {"bodies.crate.position=[0.5,0.5,0.2]"}).notes, "moved up by 200 mm"));
-    CHECK_FALSE(has_note(prepared(kCrate).notes, "was moved")); // it is there already
-    CHECK(height(prepared(kCrate, {"bodies.crate.density=250"})) == Approx(0.45).margin(1e-9));
+    CHECK(has_note(prepared(kCrate, {kUpright, "bodies.crate.position=[0.5,0.5,0.8]"}).notes, "moved down by 400 mm"));
+    CHECK(has_note(prepared(kCrate, {kUpright, "bodies.crate.position=[0.5,0.5,0.2]"}).notes, "moved up by 200 mm"));
+    CHECK_FALSE(has_note(prepared(kCrate, {kUpright}).notes, "was moved")); // it is there already
+    CHECK(height(prepared(kCrate, {kUpright, "bodies.crate.density=250"})) == Approx(0.45).margin(1e-9));
     // On its edge, half of it is under water in the same place; a quarter is as a triangle of 0.1 m.
     const std::string turned = "bodies.crate.rotation_deg=[0,45,0]";
-    CHECK(height(prepared(kCrate, {turned})) == Approx(0.4).margin(1e-9));
-    CHECK(height(prepared(kCrate, {turned, "bodies.crate.density=250"})) ==
+    CHECK(height(prepared(kCrate, {kUpright, turned})) == Approx(0.4).margin(1e-9));
+    CHECK(height(prepared(kCrate, {kUpright, turned, "bodies.crate.density=250"})) ==
           Approx(0.4 - 0.1 + 0.1 * std::sqrt(2.0)).margin(1e-9));
     CHECK(height(prepared(kRaft, {"bodies.raft.position=[0.5,0.6]", "bodies.raft.density=200"})) ==
           Approx(0.3 - 0.02 + 0.05).margin(1e-9));
+}
+
+TEST_CASE("in a scene that starts at rest bodies lie in the stable pose that they come to", "[scene][rest]")
+{
+    const auto tilt_deg = [](const scene::PreparedScene& scene) {
+        const Vec3d up = scene.bodies.at(0).start.orientation * Vec3d::UnitZ();
+        return std::acos(std::clamp(up.z(), -1.0, 1.0)) * 180.0 / std::numbers::pi;
+    };
+    // In the plane a square of half the density floats on its edge, and one of a quarter at atan 1/2 (Reid 1963).
+    const std::vector<std::string> square{"bodies.raft.shape={\"box\": [0.2, 0.2]}",
+                                          "bodies.raft.rotation_deg=[0,7,0]"};
+    const auto with = [&](const std::string& change) {
+        std::vector<std::string> changes = square;
+        changes.push_back(change);
+        return prepared(kRaft, changes);
+    };
+    const auto half = with("bodies.raft.density=500");
+    CHECK(tilt_deg(half) == Approx(45.0).margin(0.1));
+    CHECK(half.bodies[0].start.orientation.vec().cwiseAbs().dot(Vec3d(1, 0, 1)) < 1e-9); // about y alone
+    CHECK(has_note(half.notes, "turned by 38 degrees to where it floats"));
+    CHECK(tilt_deg(with("bodies.raft.density=250")) == Approx(26.565).margin(0.1));
+    CHECK(tilt_deg(with("bodies.raft.density=100")) == Approx(0.0).margin(0.1));
+    std::vector<std::string> held = square;
+    held.insert(held.end(), {"bodies.raft.density=500", "bodies.raft.lock=[\"ry\"]"});
+    CHECK(tilt_deg(prepared(kRaft, held)) == Approx(7.0).margin(1e-6));
+    // A plate in space rights itself and keeps its heading.
+    const auto plate =
+        prepared(kCrate, {"bodies.crate.shape={\"box\": [0.2, 0.2, 0.04]}", "bodies.crate.rotation_deg=[20,0,0]"});
+    CHECK(tilt_deg(plate) == Approx(0.0).margin(1e-3));
+    CHECK(height(plate) == Approx(0.4).margin(1e-6));
 }
 
 TEST_CASE("what does not float freely stays as it is given", "[scene][rest]")
@@ -87,7 +122,7 @@ TEST_CASE("what does not float freely stays as it is given", "[scene][rest]")
     stays({"bodies.crate.motion=fixed"}, "");
     stays({"gravity=[0,0,0]"}, "");
     stays({"gravity=[1,0,-9]"}, "");
-    const std::vector<std::string> locked{"bodies.crate.lock=[\"x\",\"rx\",\"rz\"]",
+    const std::vector<std::string> locked{"bodies.crate.lock=[\"x\",\"rx\",\"ry\"]",
                                           "bodies.crate.position=[0.5,0.5,0.7]"};
     CHECK(height(prepared(kCrate, locked)) == Approx(0.4).margin(1e-9)); // other axes do not hold it up
 }

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "flotsam/scene/run_scene.hpp"
+#include "flotsam/validation/validation.hpp"
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flotsam::validation {
+
+/// A case as the list of cases has it. `run` fills checks, charts and notes.
+struct Case {
+    const char* name;
+    const char* group;
+    const char* title;
+    double quick_limit; ///< [s] on two cores; 0: not part of a quick run
+    double full_limit;  ///< [s]
+    void (*run)(const ValidationOptions&, ValidationResult&);
+};
+
+// One list for each group.
+[[nodiscard]] std::span<const Case> static_cases();       // statics.cpp
+[[nodiscard]] std::span<const Case> coupled_cases();      // coupled_motion.cpp
+[[nodiscard]] std::span<const Case> fluid_cases();        // fluid_alone.cpp
+[[nodiscard]] std::span<const Case> conservation_cases(); // conservation.cpp
+
+/// What a run of a scene left: its report and the columns of its history.csv.
+struct RecordedRun {
+    RunReport report;
+    std::map<std::string, std::vector<double>> history;
+
+    [[nodiscard]] const std::vector<double>& column(const std::string& name) const { return history.at(name); }
+};
+
+/// Runs a scene text as the program does, in a temporary directory.
+[[nodiscard]] RecordedRun run_recorded(std::string_view scene, const ValidationOptions& options);
+
+/// The same without its history.
+[[nodiscard]] RunReport run_unrecorded(std::string_view scene, const ValidationOptions& options);
+
+/// Scene text of a tank that is open above, from the origin to `size` (in 2-D size.y is left out), filled up to
+/// `level`, with `bodies`: the inside of the scene's list.
+struct TankScene {
+    int dimensions = 2;
+    double spacing = 0.0, width = 0.0, depth = 0.0, level = 0.0, height = 0.0; ///< along x, y, z [m]
+    double duration = 0.0, frames_per_second = 30.0;
+    std::string bodies{};
+
+    [[nodiscard]] std::string text() const;
+};
+
+/// Slope of the line through the points by least squares.
+[[nodiscard]] double slope(std::span<const double> x, std::span<const double> y);
+
+/// Value at `x` on the line through the points to both sides; `xs` rises.
+[[nodiscard]] double interpolated(std::span<const double> xs, std::span<const double> ys, double x);
+
+} // namespace flotsam::validation

@@ -1,0 +1,182 @@
+// Bodies that move with the water: release under water, heave.
+#include "validation/case.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+namespace flotsam::validation {
+namespace {
+
+constexpr double kGravity = 9.81, kWater = 1000.0;
+constexpr std::array<double, 4> kRatios = {0.001, 0.1, 0.5, 0.8};
+
+struct ReleasedBody {
+    const char* name;
+    const char* shape; ///< of 0.1 m in radius or half edge
+    int dimensions;
+    double added_mass; ///< of the displaced mass, in water without bounds
+};
+
+/// Acceleration (1 - s) / (s + Ca) g of a body let go under water, fitted to its speed over 0.02 to 0.1 s as far as it
+/// has moved by less than a tenth of its size.
+void release(const ReleasedBody& body, double resolution, const ValidationOptions& options, ValidationResult& result)
+{
+    constexpr double kRadius = 0.1;
+    const double spacing = kRadius / resolution;
+    ValidationCurve measured{body.name, ValidationCurve::Kind::measured, {}, {}};
+    ValidationCurve theory{std::string(body.name) + ", theory", ValidationCurve::Kind::reference, {}, {}};
+    for (const double ratio : kRatios) {
+        TankScene tank{.dimensions = body.dimensions, .spacing = spacing};
+        tank.width = body.dimensions == 2 ? 12.0 * kRadius : 6.0 * kRadius; // 5 and 2 radii of water beside it
+        tank.depth = tank.level = tank.width;
+        tank.height = 1.3 * tank.level;
+        tank.duration = 0.1;
+        tank.frames_per_second = 500.0;
+        std::ostringstream text;
+        text << R"({"name": "body", "shape": )" << body.shape << R"(, "density": )" << kWater * ratio
+             << R"(, "position": [)" << 0.5 * tank.width << ", " << (body.dimensions == 3 ? 0.5 * tank.depth : 0.0)
+             << ", " << 0.5 * tank.level << "]}";
+        tank.bodies = text.str();
+        const RecordedRun run = run_recorded(tank.text(), options);
+        const std::vector<double>&t = run.column("t"), &z = run.column("body.z"), &v = run.column("body.vz");
+        std::vector<double> times, speeds;
+        for (std::size_t k = 0; k < t.size(); ++k) {
+            if (t[k] < 0.02 - 1e-9 || z[k] - z[0] > 0.2 * kRadius) continue;
+            times.push_back(t[k]);
+            speeds.push_back(v[k]);
+        }
+        const double exact = (1.0 - ratio) / (ratio + body.added_mass);
+        std::ostringstream quantity;
+        quantity << body.name << ", acceleration / g, s = " << ratio;
+        result.checks.push_back({quantity.str(), "-", resolution, slope(times, speeds) / kGravity, exact, 0.1 * exact,
+                                 std::nullopt, run.report.simulated_seconds, run.report.wall_seconds});
+        measured.x.push_back(ratio);
+        measured.y.push_back(result.checks.back().value);
+        theory.x.push_back(ratio);
+        theory.y.push_back(exact);
+    }
+    std::ostringstream title;
+    title << "Acceleration of a " << body.name << " of " << resolution << " spacings in radius, let go under water";
+    result.charts.push_back({title.str(), "density ratio", "acceleration / g", {measured, theory}, 0.0});
+}
+
+void run_release_2d(const ValidationOptions& options, ValidationResult& result)
+{
+    for (const ReleasedBody& body : {ReleasedBody{"disc", R"({"disc": 0.1})", 2, 1.0},
+                                     ReleasedBody{"square", R"({"box": [0.2, 0.2]})", 2, 1.186}}) {
+        if (!options.quick) release(body, 6.0, options, result);
+        release(body, 10.0, options, result);
+    }
+}
+
+void run_release_3d(const ValidationOptions& options, ValidationResult& result)
+{
+    for (const double resolution : {5.0, 10.0})
+        release({"sphere", R"({"sphere": 0.1})", 3, 0.5}, resolution, options, result);
+    result.notes.push_back("The walls, two radii of water away, take 3 to 6 % of the acceleration; the reference is "
+                           "that of water without bounds.");
+}
+
+/// Times and values of the extrema of y.
+struct Extremum {
+    double time, value;
+};
+std::vector<Extremum> extrema(const std::vector<double>& t, const std::vector<double>& y)
+{
+    std::vector<Extremum> found;
+    for (std::size_t k = 1; k + 1 < y.size(); ++k)
+        if ((y[k] - y[k - 1]) * (y[k + 1] - y[k]) < 0.0) found.push_back({t[k], y[k]});
+    return found;
+}
+
+/// z / z0 of the half-submerged disc by linear potential theory, T = t sqrt(g / R): computed for this project.
+constexpr std::array<double, 12> kHeaveTime = {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 3.72, 5.0, 7.0, 10.0};
+constexpr std::array<double, 12> kHeave = {1.0,    0.922,  0.704,  0.390,  0.042, -0.276,
+                                           -0.510, -0.627, -0.639, -0.323, 0.298, -0.180};
+
+void run_disc_heave(const ValidationOptions& options, ValidationResult& result)
+{
+    constexpr double kRadius = 0.1, kLift = 0.03;
+    ValidationChart chart{"Heave of a half-submerged disc", "t sqrt(g / R)", "z / z0", {}, 0.08};
+    for (const double resolution : options.quick ? std::vector{10.0} : std::vector{7.0, 10.0, 14.0}) {
+        TankScene tank{.dimensions = 2,
+                       .spacing = kRadius / resolution,
+                       .width = 3.0,
+                       .level = 0.6,
+                       .height = 1.0,
+                       .duration = 1.1,
+                       .frames_per_second = 100.0};
+        std::ostringstream text;
+        text << R"({"name": "disc", "shape": {"disc": 0.1}, "density": 500, "position": [1.5, )" << tank.level + kLift
+             << "]}";
+        tank.bodies = text.str();
+        const RecordedRun run = run_recorded(tank.text(), options);
+        ValidationCurve curve{"", ValidationCurve::Kind::measured, run.column("t"), run.column("disc.z")};
+        for (double& t : curve.x) t *= std::sqrt(kGravity / kRadius);
+        for (double& z : curve.y) z = (z - tank.level) / kLift;
+        std::ostringstream label;
+        label << "measured, R of " << resolution << " spacings";
+        curve.label = label.str();
+        const std::vector<Extremum> turns = extrema(curve.x, curve.y);
+        const auto check = [&](const char* quantity, double value, double reference, double tolerance) {
+            result.checks.push_back({quantity, "-", resolution, value, reference, tolerance, std::nullopt,
+                                     run.report.simulated_seconds, run.report.wall_seconds});
+        };
+        check("first trough z / z0", turns.empty() ? NAN : turns[0].value, -0.639, 0.08);
+        check("period t sqrt(g / R)", turns.size() < 2 ? NAN : 2.0 * (turns[1].time - turns[0].time), 7.0, 0.35);
+        check("z / z0 at t sqrt(g / R) = 1", interpolated(curve.x, curve.y, 1.0), 0.704, 0.08);
+        chart.curves.push_back(curve);
+    }
+    chart.curves.push_back({"linear potential theory",
+                            ValidationCurve::Kind::reference,
+                            {kHeaveTime.begin(), kHeaveTime.end()},
+                            {kHeave.begin(), kHeave.end()}});
+    result.charts.push_back(chart);
+}
+
+/// Square boxes of half the water's density, held upright. Periods lie between 1.1 and 1.6 times 2 pi sqrt(draft / g),
+/// by experiments.
+void run_box_heave(const ValidationOptions& options, ValidationResult& result)
+{
+    for (const double draft : options.quick ? std::vector{0.05} : std::vector{0.05, 0.1, 0.2}) {
+        constexpr double kResolution = 8.0; // of the draft
+        const double without = 2.0 * std::numbers::pi * std::sqrt(draft / kGravity);
+        TankScene tank{.dimensions = 2,
+                       .spacing = draft / kResolution,
+                       .width = 16.0 * draft,
+                       .level = 8.0 * draft,
+                       .height = 14.0 * draft,
+                       .duration = 2.5 * without,
+                       .frames_per_second = 40.0 / without};
+        std::ostringstream text;
+        text << R"({"name": "box", "shape": {"box": [)" << 2.0 * draft << ", " << 2.0 * draft
+             << R"(]}, "density": 500, "lock": ["ry"], "position": [)" << 0.5 * tank.width << ", "
+             << tank.level + 0.4 * draft << "]}";
+        tank.bodies = text.str();
+        const RecordedRun run = run_recorded(tank.text(), options);
+        const std::vector<Extremum> turns = extrema(run.column("t"), run.column("box.z"));
+        const double period = turns.size() < 2 ? NAN : 2.0 * (turns[1].time - turns[0].time);
+        std::ostringstream quantity;
+        quantity << "period / 2 pi sqrt(draft / g), draft of " << draft << " m";
+        result.checks.push_back({quantity.str(), "-", kResolution, period / without, 1.35, 0.25, std::nullopt,
+                                 run.report.simulated_seconds, run.report.wall_seconds});
+    }
+}
+
+constexpr std::array kCases = {
+    Case{"release_2d", "coupled motion", "A disc and a square let go under water", 60.0, 100.0, run_release_2d},
+    Case{"release_3d", "coupled motion", "A sphere let go under water", 0.0, 800.0, run_release_3d},
+    Case{"disc_heave", "coupled motion", "Heave of a half-submerged disc", 40.0, 250.0, run_disc_heave},
+    Case{"box_heave", "coupled motion", "Heave period of a box", 20.0, 100.0, run_box_heave},
+};
+
+} // namespace
+
+std::span<const Case> coupled_cases()
+{
+    return kCases;
+}
+
+} // namespace flotsam::validation

@@ -1,0 +1,191 @@
+#include "flotsam/io/output_directory.hpp"
+#include "flotsam/io/output_error.hpp"
+#include "flotsam/validation/validation.hpp"
+#include "flotsam/version.hpp"
+#include "validation/case.hpp"
+#include "validation/draw_chart.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <thread>
+
+namespace flotsam {
+namespace {
+
+std::string digits(double value, int count)
+{
+    std::ostringstream text;
+    text << std::setprecision(count) << value;
+    return text.str();
+}
+
+std::string with_sign(double value, int decimals)
+{
+    std::ostringstream text;
+    text << std::showpos << std::fixed << std::setprecision(decimals) << value;
+    return text.str();
+}
+
+std::string error_percent(const ValidationCheck& check)
+{
+    const auto error = check.relative_error();
+    return error ? with_sign(100.0 * *error, 2) : "";
+}
+
+std::string error_in_spacings(const ValidationCheck& check)
+{
+    return check.spacing ? with_sign(check.error() / *check.spacing, 3) : "";
+}
+
+std::string order(const ValidationResult& result, const ValidationCheck& check)
+{
+    const auto value = order_of_convergence(result, check.quantity);
+    return value ? with_sign(*value, 1) : "";
+}
+
+// -- CSV --------------------------------------------------------------------------------------------------------------
+
+std::string quoted(const std::string& text)
+{
+    std::string result = "\"";
+    for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return result + "\"";
+}
+
+std::string csv_of(const std::vector<ValidationResult>& results)
+{
+    std::ostringstream csv;
+    csv << "case,quantity,unit,resolution,value,reference,tolerance,error,error_percent,error_spacings,order,passed,"
+           "simulated_seconds,wall_seconds\n";
+    csv.precision(9);
+    for (const ValidationResult& result : results)
+        for (const ValidationCheck& c : result.checks)
+            csv << result.name << ',' << quoted(c.quantity) << ',' << quoted(c.unit) << ',' << c.resolution << ','
+                << c.value << ',' << c.reference << ',' << c.tolerance << ',' << c.error() << ',' << error_percent(c)
+                << ',' << error_in_spacings(c) << ',' << order(result, c) << ',' << (c.passed() ? "yes" : "no") << ','
+                << c.simulated_seconds << ',' << c.wall_seconds << '\n';
+    return csv.str();
+}
+
+// -- HTML -------------------------------------------------------------------------------------------------------------
+
+std::string escaped(const std::string& text)
+{
+    std::string result;
+    for (const char c : text) {
+        if (c == '&')
+            result += "&amp;";
+        else if (c == '<')
+            result += "&lt;";
+        else
+            result += c;
+    }
+    return result;
+}
+
+constexpr const char* kHead = R"(<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>flotsam: validation</title><style>
+body { font: 15px/1.45 sans-serif; max-width: 1060px; margin: 2em auto; padding: 0 1em; color: #222 }
+h1 { font-size: 1.6em } h2 { font-size: 1.2em; margin-top: 2.2em; border-bottom: 1px solid #ccc }
+table { border-collapse: collapse; font-size: 13px; width: 100% }
+th, td { padding: 2px 8px; text-align: right; border-bottom: 1px solid #e4e4e4 }
+th:first-child, td:first-child { text-align: left }
+td.ok { color: #1a7a2e } td.outside { color: #b3261e; font-weight: bold }
+svg { max-width: 100%; height: auto; margin-top: 1em }
+</style></head><body>
+)";
+
+std::string processor()
+{
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.rfind("model name", 0) == 0 && line.find(':') != std::string::npos)
+            return line.substr(line.find(':') + 2);
+    return "unknown processor";
+}
+
+std::string today()
+{
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    ::gmtime_r(&now, &parts);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%d", &parts);
+    return text;
+}
+
+int count_passed(const ValidationResult& result)
+{
+    return static_cast<int>(
+        std::count_if(result.checks.begin(), result.checks.end(), [](const auto& check) { return check.passed(); }));
+}
+
+void write_summary(std::ostream& html, const std::vector<ValidationResult>& results)
+{
+    html << "<table><tr><th>case</th><th>inside their bands</th><th>time [s]</th><th>limit [s]</th></tr>\n";
+    for (const ValidationResult& r : results)
+        html << "<tr><td><a href=\"#" << r.name << "\">" << escaped(r.title) << "</a> (" << escaped(r.group)
+             << ")</td><td class=\"" << (r.passed() ? "ok" : "outside") << "\">" << count_passed(r) << " of "
+             << r.checks.size() << "</td><td>" << std::lround(r.wall_seconds) << "</td><td>" << r.time_limit
+             << "</td></tr>\n";
+    html << "</table>\n";
+}
+
+void write_checks(std::ostream& html, const ValidationResult& result)
+{
+    html << "<table><tr><th>quantity</th><th>size / spacing</th><th>measured</th><th>reference</th><th>band</th>"
+            "<th>error [%]</th><th>error [spacings]</th><th>order</th><th></th></tr>\n";
+    for (const ValidationCheck& c : result.checks)
+        html << "<tr><td>" << escaped(c.quantity) << (c.unit == "-" ? "" : " [" + escaped(c.unit) + "]") << "</td><td>"
+             << digits(c.resolution, 3) << "</td><td>" << digits(c.value, 4) << "</td><td>" << digits(c.reference, 4)
+             << "</td><td>&plusmn; " << digits(c.tolerance, 2) << "</td><td>" << error_percent(c) << "</td><td>"
+             << error_in_spacings(c) << "</td><td>" << order(result, c) << "</td><td class=\""
+             << (c.passed() ? "ok\">inside" : "outside\">outside") << "</td></tr>\n";
+    html << "</table>\n";
+}
+
+std::string html_of(const std::vector<ValidationResult>& results, const ValidationOptions& options)
+{
+    double seconds = 0.0;
+    for (const ValidationResult& result : results) seconds += result.wall_seconds;
+    const unsigned threads =
+        options.threads > 0 ? static_cast<unsigned>(options.threads) : std::thread::hardware_concurrency();
+    std::ostringstream html;
+    html << kHead << "<h1>flotsam " << kVersion << ": validation" << (options.quick ? " (quick)" : "") << "</h1>\n<p>"
+         << today() << ", " << escaped(processor()) << ", " << threads << (threads == 1 ? " thread, " : " threads, ")
+         << std::lround(seconds)
+         << " s. Order: of the errors' convergence with the resolution, where there are several "
+         << "of it.</p>\n";
+    write_summary(html, results);
+    for (const ValidationResult& result : results) {
+        html << "<h2 id=\"" << result.name << "\">" << escaped(result.title) << "</h2>\n";
+        write_checks(html, result);
+        for (const std::string& note : result.notes) html << "<p>" << escaped(note) << "</p>\n";
+        for (const ValidationChart& chart : result.charts) {
+            try {
+                html << validation::svg_of(chart) << "\n";
+            } catch (const OutputError& error) {
+                html << "<p>" << escaped(chart.title) << ": not drawn. " << escaped(error.what()) << "</p>\n";
+            }
+        }
+    }
+    html << "</body></html>\n";
+    return html.str();
+}
+
+} // namespace
+
+void write_validation_report(const std::filesystem::path& directory, const std::vector<ValidationResult>& results,
+                             const ValidationOptions& options)
+{
+    std::error_code failed;
+    std::filesystem::create_directories(directory, failed);
+    if (failed) throw OutputError(directory.string() + " cannot be made: " + failed.message());
+    write_text_atomically(directory / "validation.csv", csv_of(results));
+    write_text_atomically(directory / "report.html", html_of(results, options));
+}
+
+} // namespace flotsam
