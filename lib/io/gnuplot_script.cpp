@@ -63,6 +63,7 @@ std::string gnuplot_script(const Plot& plot, const std::string& terminal, const 
                          std::to_string(plot.height) + "\nset output " + quoted(output) + "\nset encoding utf8\n";
     script += "set title " + quoted(plot.title) + "\nset xlabel " + quoted(plot.x_label) + "\nset ylabel " +
               quoted(plot.y_label) + "\nset grid linecolor rgb '#DDDDDD'\nset xzeroaxis linetype -1\n";
+    script += "set key outside bottom center horizontal\nset offsets graph 0.02, graph 0.02, graph 0.03, graph 0.03\n";
     for (std::size_t k = 0; k < plot.series.size(); ++k) append_data(script, k, plot.series[k]);
     script += "plot ";
     for (std::size_t k = 0; k < plot.series.size(); ++k) {

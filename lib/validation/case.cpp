@@ -80,9 +80,10 @@ std::string TankScene::text() const
     const std::string origin = dimensions == 3 ? "[0, 0, 0]" : "[0, 0]";
     std::ostringstream scene;
     scene.precision(17);
-    scene << R"({"flotsam": 1, "dimensions": )" << dimensions << R"(, "particle_spacing": )" << spacing
-          << R"(, "duration": )" << duration << R"(, "fluids": [{"blocks": [{"min": )" << origin << R"(, "max": )"
-          << corner(level) << R"(}]}], "walls": [{"box": {"min": )" << origin << R"(, "max": )" << corner(height)
+    scene << R"({"flotsam": 1, "start": ")" << (starts_at_rest ? "at_rest" : "as_given") << R"(", "dimensions": )"
+          << dimensions << R"(, "particle_spacing": )" << spacing << R"(, "duration": )" << duration
+          << R"(, "fluids": [{"blocks": [{"min": )" << origin << R"(, "max": )" << corner(level)
+          << R"(}]}], "walls": [{"box": {"min": )" << origin << R"(, "max": )" << corner(height)
           << R"(, "open": ["+z"]}}], "bodies": [)" << bodies << R"(], "output": {"frames_per_second": )"
           << frames_per_second << "}}";
     return scene.str();

@@ -47,6 +47,7 @@ struct TankScene {
     int dimensions = 2;
     double spacing = 0.0, width = 0.0, depth = 0.0, level = 0.0, height = 0.0; ///< along x, y, z [m]
     double duration = 0.0, frames_per_second = 30.0;
+    bool starts_at_rest = false;
     std::string bodies{};
 
     [[nodiscard]] std::string text() const;

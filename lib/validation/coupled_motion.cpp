@@ -92,9 +92,10 @@ std::vector<Extremum> extrema(const std::vector<double>& t, const std::vector<do
 }
 
 /// z / z0 of the half-submerged disc by linear potential theory, T = t sqrt(g / R): computed for this project.
-constexpr std::array<double, 12> kHeaveTime = {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 3.72, 5.0, 7.0, 10.0};
-constexpr std::array<double, 12> kHeave = {1.0,    0.922,  0.704,  0.390,  0.042, -0.276,
-                                           -0.510, -0.627, -0.639, -0.323, 0.298, -0.180};
+constexpr std::array<double, 14> kHeaveTime = {0.0, 0.5,  1.0, 1.5, 2.0,  2.5,  3.0,
+                                               3.5, 3.72, 5.0, 7.0, 7.22, 10.0, 10.6};
+constexpr std::array<double, 14> kHeave = {1.0,    0.922,  0.704,  0.390, 0.042, -0.276, -0.510,
+                                           -0.627, -0.639, -0.323, 0.298, 0.305, -0.180, -0.212};
 
 void run_disc_heave(const ValidationOptions& options, ValidationResult& result)
 {

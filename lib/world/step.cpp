@@ -93,6 +93,8 @@ void FluidWorld::Impl::place_body_samples()
         const Vec3d arm = pose.orientation * boundary.position_body[b];
         boundary.position[b].head<3>() = (pose.position + arm).cast<Scalar>();
         boundary.velocity[b].head<3>() = twists[owner].at(arm).cast<Scalar>();
+        // A turn of a rounding error out of the plane would put samples into other cells.
+        if (settings.dimensions == 2) boundary.position[b][1] = boundary.velocity[b][1] = 0;
     });
 }
 

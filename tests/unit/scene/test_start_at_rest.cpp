@@ -94,6 +94,8 @@ TEST_CASE("in a scene that starts at rest bodies lie in the stable pose that the
     std::vector<std::string> held = square;
     held.insert(held.end(), {"bodies.raft.density=500", "bodies.raft.lock=[\"ry\"]"});
     CHECK(tilt_deg(prepared(kRaft, held)) == Approx(7.0).margin(1e-6));
+    const auto disc = prepared(kRaft, {"bodies.raft.shape={\"disc\": 0.1}", "bodies.raft.density=500"});
+    CHECK(disc.bodies[0].start.orientation.isApprox(Quatd::Identity(), 0.0)); // as good as any other way
     // A plate in space rights itself and keeps its heading.
     const auto plate =
         prepared(kCrate, {"bodies.crate.shape={\"box\": [0.2, 0.2, 0.04]}", "bodies.crate.rotation_deg=[20,0,0]"});

@@ -255,6 +255,25 @@ TEST_CASE("fluid that lies in a body is cut and noted", "[world]")
     CHECK(fluid.notes()[0] == "25 of 300 fluid particles lay inside walls or bodies and were cut away");
 }
 
+TEST_CASE("in two dimensions a body feels the water when rounding has turned it out of the plane", "[world]")
+{
+    FluidWorldSettings settings;
+    settings.dimensions = 2;
+    settings.gravity = Vec3d(0, 0, -9.81);
+    FluidWorld world(settings);
+    world.add_box_wall({Vec3d::Zero(), Vec3d(0.6, 0, 0.6)}, {"+z"});
+    world.add_block({Vec3d::Zero(), Vec3d(0.6, 0, 0.4)});
+    world.add_body(tessellate(DiscShape{0.08}, settings.particle_spacing));
+    FreeBody disc;
+    disc.mass = 10.0;
+    disc.pose = {Vec3d(0.3, 0, 0.2), Quatd(Eigen::AngleAxisd(1e-16, Vec3d(1, 1, -1).normalized()))};
+    FreeBodies bodies({disc}, settings.gravity);
+    for (int step = 0; step < 30; ++step) world.step(0.001, bodies);
+    REQUIRE(world.boundary().size() > 50);
+    for (const Vec4& position : world.boundary().position) CHECK(position.y() == 0.0f);
+    CHECK(bodies.bodies[0].momentum.z() > 0.0); // it is half as heavy as the water in its place
+}
+
 TEST_CASE("notes call walls and bodies by their names", "[world]")
 {
     FluidWorld fluid = tank(plane());
