@@ -32,7 +32,7 @@ void run(const Arguments& arguments)
 {
     const SceneFile scene = read_scene(arguments.scene, arguments.overrides);
     Progress progress(std::cout, isatty(STDOUT_FILENO) != 0);
-    NoProgress silence;
+    SilentObserver silence;
     RunObserver& observer = arguments.quiet ? static_cast<RunObserver&>(silence) : progress;
     const RunReport report = run_scene(scene, {arguments.out, arguments.threads}, observer);
     if (!arguments.quiet) print_summary(std::cout, report, arguments.out);

@@ -23,11 +23,4 @@ class Progress final : public RunObserver {
     double next_draw_ = 0.1; ///< seconds on a terminal, else a fraction of the run
 };
 
-/// Says nothing.
-class NoProgress final : public RunObserver {
-  public:
-    void on_start(std::size_t, std::size_t, const std::vector<std::string>&) override {}
-    void on_step(const RunProgress&) override {}
-};
-
 } // namespace flotsam::cli

@@ -63,17 +63,17 @@ int validate(std::ostream& stream, const Arguments& arguments)
     if (std::filesystem::exists(arguments.out, ignored) && !std::filesystem::is_directory(arguments.out, ignored))
         throw InputError("--out: " + arguments.out.string() + " is a file, and must be a directory or a new name");
     const ValidationOptions options{arguments.quick, arguments.threads};
-    std::vector<ValidationResult> results;
+    ValidationReport report(arguments.out, options);
     int outside = 0, made = 0;
     for (const ValidationCaseInfo& info : cases) {
         stream << info.name << ": " << info.title << formatted(" (up to %.0f s on two cores)\n", info.time_limit)
                << std::flush;
-        results.push_back(run_validation_case(info.name, options));
-        print(stream, results.back());
-        made += static_cast<int>(results.back().checks.size());
-        outside += static_cast<int>(std::count_if(results.back().checks.begin(), results.back().checks.end(),
+        const ValidationResult result = run_validation_case(info.name, options);
+        print(stream, result);
+        made += static_cast<int>(result.checks.size());
+        outside += static_cast<int>(std::count_if(result.checks.begin(), result.checks.end(),
                                                   [](const ValidationCheck& check) { return !check.passed(); }));
-        write_validation_report(arguments.out, results, options);
+        report.add(result);
     }
     stream << formatted("%d of %d checks lie inside their bands. In ", made - outside, made) << arguments.out.string()
            << ": report.html, validation.csv\n";

@@ -2,6 +2,7 @@
 
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/io/output_directory.hpp"
+#include "io/markup_text.hpp"
 #include "io/vtp_file.hpp"
 
 #include <charconv>
@@ -46,22 +47,6 @@ struct VertexCloud {
         return f;
     }
 };
-
-std::string escaped(const std::string& text)
-{
-    std::string result;
-    for (const char c : text) {
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else if (c == '"')
-            result += "&quot;";
-        else
-            result += c;
-    }
-    return result;
-}
 
 std::string shortest(double value)
 {

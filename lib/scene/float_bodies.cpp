@@ -29,12 +29,6 @@ FloatingBody floating(const PreparedBody& body, const SceneFile& scene)
     return result;
 }
 
-/// The turn about y alone, rid of rounding errors about other axes.
-Quatd about_y(const Quatd& turn)
-{
-    return Quatd(turn.w(), 0.0, turn.y(), 0.0).normalized();
-}
-
 /// Where the body may float in water whose surface is at `level`, the best first: the stable pose that it comes to from
 /// the one that it is given, unless it may not turn about both horizontal axes, and its height as it is turned. Empty
 /// for one that sinks.
@@ -53,8 +47,6 @@ std::vector<Pose> poses_afloat(const PreparedBody& body, const std::array<bool, 
     } catch (const NoEquilibrium&) { // as it is turned, then
     }
     if (const auto held = flotation(afloat, given)) poses.push_back(held->pose);
-    if (scene.dimensions == 2)
-        for (Pose& pose : poses) pose.orientation = about_y(pose.orientation);
     for (Pose& pose : poses) pose.position += Vec3d(body.start.position.x(), body.start.position.y(), level);
     return poses;
 }

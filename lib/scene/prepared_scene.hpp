@@ -33,12 +33,6 @@ struct PreparedWall {
     std::string name; ///< for sentences: walls[0] ("basin")
 };
 
-/// Whether water comes to rest level, as drafts are measured.
-[[nodiscard]] inline bool is_level(const Vec3d& gravity)
-{
-    return gravity.z() < 0.0 && gravity.head<2>().norm() < 1e-6 * gravity.norm();
-}
-
 struct PreparedScene {
     std::vector<SceneBlock> blocks; ///< cut by the box wall
     std::vector<TriangleMesh> fluid_meshes;

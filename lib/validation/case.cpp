@@ -13,12 +13,6 @@
 namespace flotsam::validation {
 namespace {
 
-class SilentObserver final : public RunObserver {
-  public:
-    void on_start(std::size_t, std::size_t, const std::vector<std::string>&) override {}
-    void on_step(const RunProgress&) override {}
-};
-
 std::vector<std::string> cells(const std::string& line)
 {
     std::vector<std::string> parts;

@@ -3,6 +3,7 @@
 #include "flotsam/scene/run_scene.hpp"
 #include "flotsam/validation/validation.hpp"
 
+#include <chrono>
 #include <map>
 #include <span>
 #include <string>
@@ -10,6 +11,19 @@
 #include <vector>
 
 namespace flotsam::validation {
+
+constexpr double kGravity = 9.81, kWater = 1000.0; ///< [m/s^2], [kg/m^3]
+
+class Stopwatch {
+  public:
+    [[nodiscard]] double seconds() const
+    {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 /// A case as the list of cases has it. `run` fills checks, charts and notes.
 struct Case {
@@ -41,11 +55,12 @@ struct RecordedRun {
 /// The same without its history.
 [[nodiscard]] RunReport run_unrecorded(std::string_view scene, const ValidationOptions& options);
 
-/// Scene text of a tank that is open above, from the origin to `size` (in 2-D size.y is left out), filled up to
-/// `level`, with `bodies`: the inside of the scene's list.
+/// Scene text of a tank with a corner at the origin, open above, filled up to `level`, with `bodies`: the inside of the
+/// scene's list.
 struct TankScene {
     int dimensions = 2;
-    double spacing = 0.0, width = 0.0, depth = 0.0, level = 0.0, height = 0.0; ///< along x, y, z [m]
+    double spacing = 0.0, width = 0.0, depth = 0.0, level = 0.0,
+           height = 0.0; ///< [m]; depth: along y, of no effect in 2-D
     double duration = 0.0, frames_per_second = 30.0;
     bool starts_at_rest = false;
     std::string bodies{};

@@ -9,7 +9,6 @@
 namespace flotsam::validation {
 namespace {
 
-constexpr double kGravity = 9.81, kWater = 1000.0;
 constexpr std::array<double, 4> kRatios = {0.001, 0.1, 0.5, 0.8};
 
 struct ReleasedBody {

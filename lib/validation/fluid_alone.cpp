@@ -5,26 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <sstream>
 
 namespace flotsam::validation {
 namespace {
-
-constexpr double kGravity = 9.81;
-
-class Stopwatch {
-  public:
-    [[nodiscard]] double seconds() const
-    {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 FluidWorldSettings plane_settings(double spacing, const ValidationOptions& options)
 {

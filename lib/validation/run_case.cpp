@@ -3,7 +3,6 @@
 #include "flotsam/core/contracts.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace flotsam {
@@ -45,9 +44,9 @@ ValidationResult run_validation_case(const std::string& name, const ValidationOp
     result.group = found->group;
     result.title = found->title;
     result.time_limit = options.quick && found->quick_limit > 0.0 ? found->quick_limit : found->full_limit;
-    const auto start = std::chrono::steady_clock::now();
+    const validation::Stopwatch watch;
     found->run(options, result);
-    result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.wall_seconds = watch.seconds();
     return result;
 }
 

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -17,8 +16,6 @@
 
 namespace flotsam::validation {
 namespace {
-
-constexpr double kGravity = 9.81, kWater = 1000.0;
 
 std::string at_ratio(const char* what, double density_ratio)
 {
@@ -270,7 +267,7 @@ void run_righting_arm(const ValidationOptions& options, ValidationResult& result
 /// A tank that starts at rest; means over half a second.
 void run_still_water(const ValidationOptions& options, ValidationResult& result)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const double resolution = options.quick ? 14.0 : 20.0, depth = 0.4, spacing = depth / resolution;
     FluidWorldSettings settings;
     settings.particle_spacing = spacing;
@@ -296,7 +293,7 @@ void run_still_water(const ValidationOptions& options, ValidationResult& result)
             pressure[k] += step.dt * water.pressure_at(Vec3d(0.0, 0.5 * edge, depth * (1.0 - depths[k])));
         seconds += step.dt;
     }
-    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double wall = watch.seconds();
     const auto check = [&](const std::string& quantity, const char* unit, double value, double reference,
                            double tolerance) {
         result.checks.push_back({quantity, unit, resolution, value / seconds, reference, tolerance,

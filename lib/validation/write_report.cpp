@@ -1,8 +1,9 @@
+#include "flotsam/core/parallel.hpp"
 #include "flotsam/io/output_directory.hpp"
 #include "flotsam/io/output_error.hpp"
 #include "flotsam/validation/validation.hpp"
 #include "flotsam/version.hpp"
-#include "validation/case.hpp"
+#include "io/markup_text.hpp"
 #include "validation/draw_chart.hpp"
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 #include <fstream>
 #include <iomanip>
 #include <sstream>
-#include <thread>
 
 namespace flotsam {
 namespace {
@@ -71,20 +71,6 @@ std::string csv_of(const std::vector<ValidationResult>& results)
 }
 
 // -- HTML -------------------------------------------------------------------------------------------------------------
-
-std::string escaped(const std::string& text)
-{
-    std::string result;
-    for (const char c : text) {
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else
-            result += c;
-    }
-    return result;
-}
 
 constexpr const char* kHead = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>flotsam: validation</title><style>
@@ -147,12 +133,28 @@ void write_checks(std::ostream& html, const ValidationResult& result)
     html << "</table>\n";
 }
 
-std::string html_of(const std::vector<ValidationResult>& results, const ValidationOptions& options)
+std::string section_of(const ValidationResult& result)
+{
+    std::ostringstream html;
+    html << "<h2 id=\"" << result.name << "\">" << escaped(result.title) << "</h2>\n";
+    write_checks(html, result);
+    for (const std::string& note : result.notes) html << "<p>" << escaped(note) << "</p>\n";
+    for (const ValidationChart& chart : result.charts) {
+        try {
+            html << validation::svg_of(chart) << "\n";
+        } catch (const OutputError& error) {
+            html << "<p>" << escaped(chart.title) << ": not drawn. " << escaped(error.what()) << "</p>\n";
+        }
+    }
+    return html.str();
+}
+
+std::string html_of(const std::vector<ValidationResult>& results, const std::vector<std::string>& sections,
+                    const ValidationOptions& options)
 {
     double seconds = 0.0;
     for (const ValidationResult& result : results) seconds += result.wall_seconds;
-    const unsigned threads =
-        options.threads > 0 ? static_cast<unsigned>(options.threads) : std::thread::hardware_concurrency();
+    const int threads = Workers(options.threads).threads();
     std::ostringstream html;
     html << kHead << "<h1>flotsam " << kVersion << ": validation" << (options.quick ? " (quick)" : "") << "</h1>\n<p>"
          << today() << ", " << escaped(processor()) << ", " << threads << (threads == 1 ? " thread, " : " threads, ")
@@ -160,32 +162,22 @@ std::string html_of(const std::vector<ValidationResult>& results, const Validati
          << " s. Order: of the errors' convergence with the resolution, where there are several "
          << "of it.</p>\n";
     write_summary(html, results);
-    for (const ValidationResult& result : results) {
-        html << "<h2 id=\"" << result.name << "\">" << escaped(result.title) << "</h2>\n";
-        write_checks(html, result);
-        for (const std::string& note : result.notes) html << "<p>" << escaped(note) << "</p>\n";
-        for (const ValidationChart& chart : result.charts) {
-            try {
-                html << validation::svg_of(chart) << "\n";
-            } catch (const OutputError& error) {
-                html << "<p>" << escaped(chart.title) << ": not drawn. " << escaped(error.what()) << "</p>\n";
-            }
-        }
-    }
+    for (const std::string& section : sections) html << section;
     html << "</body></html>\n";
     return html.str();
 }
 
 } // namespace
 
-void write_validation_report(const std::filesystem::path& directory, const std::vector<ValidationResult>& results,
-                             const ValidationOptions& options)
+void ValidationReport::add(const ValidationResult& result)
 {
+    results_.push_back(result);
+    sections_.push_back(section_of(result));
     std::error_code failed;
-    std::filesystem::create_directories(directory, failed);
-    if (failed) throw OutputError(directory.string() + " cannot be made: " + failed.message());
-    write_text_atomically(directory / "validation.csv", csv_of(results));
-    write_text_atomically(directory / "report.html", html_of(results, options));
+    std::filesystem::create_directories(directory_, failed);
+    if (failed) throw OutputError(directory_.string() + " cannot be made: " + failed.message());
+    write_text_atomically(directory_ / "validation.csv", csv_of(results_));
+    write_text_atomically(directory_ / "report.html", html_of(results_, sections_, options_));
 }
 
 } // namespace flotsam

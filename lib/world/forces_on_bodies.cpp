@@ -6,12 +6,6 @@
 namespace flotsam {
 namespace {
 
-/// Whether water comes to rest level, as water lines are measured.
-bool is_level(const Vec3d& gravity)
-{
-    return gravity.z() < 0.0 && gravity.head<2>().norm() < 1e-6 * gravity.norm();
-}
-
 /// A height above which no part of the mesh lies.
 double above(const TriangleMesh& mesh, const Pose& pose)
 {

@@ -10,13 +10,6 @@
 
 namespace flotsam::test {
 
-/// An observer that only notes what was noticed at the start.
-class SilentObserver final : public RunObserver {
-  public:
-    void on_start(std::size_t, std::size_t, const std::vector<std::string>&) override {}
-    void on_step(const RunProgress&) override {}
-};
-
 /// Runs a scene given as text, as the program does, without writing results.
 inline RunReport run_text(const std::string& text)
 {

@@ -6,6 +6,13 @@
 
 namespace flotsam {
 
+/// Whether water comes to rest level under `gravity`, as water lines and drafts are measured: it points down the z
+/// axis.
+[[nodiscard]] inline bool is_level(const Vec3d& gravity)
+{
+    return gravity.z() < 0.0 && gravity.head<2>().norm() < 1e-6 * gravity.norm();
+}
+
 /// The part of a solid that lies below a horizontal water plane.
 struct Submerged {
     double volume = 0.0;                      ///< [m^3]

@@ -32,6 +32,13 @@ class RunObserver {
     virtual void on_step(const RunProgress& progress) = 0;
 };
 
+/// Does nothing with what it is told.
+class SilentObserver final : public RunObserver {
+  public:
+    void on_start(std::size_t, std::size_t, const std::vector<std::string>&) override {}
+    void on_step(const RunProgress&) override {}
+};
+
 /// The physics came apart, or results could not be written; what() is one sentence.
 class RunFailure : public std::runtime_error {
   public:

@@ -76,9 +76,22 @@ struct ValidationCaseInfo {
 /// log resolution, by least squares, negated; nothing where fewer than two errors differ from zero.
 [[nodiscard]] std::optional<double> order_of_convergence(const ValidationResult& result, const std::string& quantity);
 
-/// Writes validation.csv (a row for each check) into `directory`, which is made if need be, and report.html, one page
-/// with tables and charts that needs no other file. Throws OutputError.
-void write_validation_report(const std::filesystem::path& directory, const std::vector<ValidationResult>& results,
-                             const ValidationOptions& options);
+/// What came out of the cases so far, in a directory that is made if need be: validation.csv, a row for each check, and
+/// report.html, one page with tables and charts that needs no other file. Each chart is drawn once.
+class ValidationReport {
+  public:
+    ValidationReport(std::filesystem::path directory, const ValidationOptions& options)
+        : directory_(std::move(directory)), options_(options)
+    {
+    }
+    /// Adds a case and writes both files anew. Throws OutputError.
+    void add(const ValidationResult& result);
+
+  private:
+    std::filesystem::path directory_;
+    ValidationOptions options_;
+    std::vector<ValidationResult> results_;
+    std::vector<std::string> sections_; ///< of the page, one per result
+};
 
 } // namespace flotsam

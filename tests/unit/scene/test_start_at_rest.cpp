@@ -13,11 +13,6 @@ using namespace flotsam::testing;
 
 namespace {
 
-struct Silent final : RunObserver {
-    void on_start(std::size_t, std::size_t, const std::vector<std::string>&) override {}
-    void on_step(const RunProgress&) override {}
-};
-
 /// The scene of the text, started at rest and checked.
 scene::PreparedScene prepared(const std::string& text, std::vector<std::string> overrides = {})
 {
@@ -167,7 +162,7 @@ TEST_CASE("the water level is that of the water under the body", "[scene][rest]"
 TEST_CASE("a run that starts at rest reports bodies where they float", "[scene][rest]")
 {
     const auto ran = [](const std::string& start, int threads) {
-        Silent silent;
+        SilentObserver silent;
         return run_scene(parsed(kRaft, {"start=" + start, "bodies.raft.position=[0.5,0.4]", "duration=0.05"}),
                          {{}, threads}, silent);
     };

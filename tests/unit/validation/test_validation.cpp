@@ -92,7 +92,7 @@ TEST_CASE("the report is a table and a page that needs no other file", "[validat
     result.charts = {{"Drafts", "size", "draft", {{"theory", ValidationCurve::Kind::reference, {0, 1}, {1, 1}}}, 0.1}};
     const auto directory =
         std::filesystem::temp_directory_path() / ("flotsam_validation_" + std::to_string(::getpid()));
-    write_validation_report(directory, {result}, {});
+    ValidationReport(directory, {}).add(result);
     const std::string csv = text_of(directory / "validation.csv"), page = text_of(directory / "report.html");
     std::filesystem::remove_all(directory);
     CHECK(contains(csv, "case,quantity,unit,resolution,value,reference,tolerance,"));
