@@ -33,8 +33,8 @@ PressureSettings read_pressure(const JsonNode& node)
                             {"solver", "source", "coupling", "tolerance", "velocity_tolerance", "max_iterations"});
     Settings settings;
     if (const auto solver = object.find("solver"))
-        settings.solver =
-            std::array{Settings::Solver::iisph, Settings::Solver::mprgp}[solver->one_of({"iisph", "mprgp"})];
+        settings.solver = std::array{Settings::Solver::iisph, Settings::Solver::mprgp,
+                                     Settings::Solver::spg}[solver->one_of({"iisph", "mprgp", "spg"})];
     if (const auto source = object.find("source"))
         settings.source =
             std::array{Settings::Source::split, Settings::Source::published}[source->one_of({"split", "published"})];

@@ -100,6 +100,7 @@ struct FluidWorld::Impl {
     Viscosity viscosity;
     RelaxedJacobi relaxed_jacobi;
     Mprgp mprgp;
+    SpectralGradient spectral_gradient;
     PressureOperator pressure_operator;
     ResponsePreconditioner preconditioner;
     WallGuard guard;
@@ -127,6 +128,7 @@ struct FluidWorld::Impl {
     double last_dt = 0.0;
     int failed_shifts = 0;       ///< in a row
     int steps_without_shift = 0; ///< still to come
+    int steps_enclosed = 0;      ///< still to come, in which water counts as enclosed by solids
 
     [[nodiscard]] std::size_t owners() const { return walls.size() + bodies.size(); }
     [[nodiscard]] double spacing() const { return settings.particle_spacing; }

@@ -8,8 +8,18 @@ namespace flotsam {
 
 ComplementaritySolver& FluidWorld::Impl::solver()
 {
-    if (settings.pressure.solver == PressureSettings::Solver::mprgp) return mprgp;
-    return relaxed_jacobi;
+    switch (settings.pressure.solver) {
+    case PressureSettings::Solver::iisph:
+        return relaxed_jacobi;
+    case PressureSettings::Solver::mprgp:
+        return mprgp;
+    case PressureSettings::Solver::spg:
+        break;
+    }
+    // Enclosed water has no surface that moves, and is stiff: there conjugate gradients are at their best, and leave
+    // less of the smooth errors, which no shift could take out.
+    if (steps_enclosed > 0) return mprgp;
+    return spectral_gradient;
 }
 
 /// Zero for walls and for bodies that do not respond or touch no fluid.
@@ -83,7 +93,8 @@ SolveResult FluidWorld::Impl::solve_shift()
 /// dropped for it, and where shifts fail step after step, so are those of some steps to come.
 bool FluidWorld::Impl::shift_if_possible(StepReport& report)
 {
-    constexpr int kFailures = 3, kStepsWithout = 50;
+    constexpr int kFailures = 3, kStepsWithout = 50, kStepsEnclosed = 1000;
+    steps_enclosed = std::max(0, steps_enclosed - 1);
     if (settings.pressure.source == PressureSettings::Source::split && steps_without_shift == 0) {
         const SolveResult result = solve_shift();
         report.shift_iterations = result.iterations;
@@ -91,6 +102,7 @@ bool FluidWorld::Impl::shift_if_possible(StepReport& report)
         report.converged = result.converged;
         failed_shifts = result.converged ? 0 : failed_shifts + 1;
         if (result.converged) return true;
+        steps_enclosed = kStepsEnclosed;
         if (failed_shifts >= kFailures) {
             failed_shifts = kFailures - 1; // the next one that fails is enough
             steps_without_shift = kStepsWithout;
@@ -167,10 +179,10 @@ void FluidWorld::Impl::solve_velocities(const PressureSystem& system, double dt,
     });
     diagonal.resize(n);
     system.fluid_diagonal(diagonal);
-    const bool is_krylov = pressure.solver == PressureSettings::Solver::mprgp;
+    const bool preconditions = pressure.solver != PressureSettings::Solver::iisph;
     if (is_strong()) {
         build_mobility(port);
-        if (is_krylov) preconditioner.build(system, mobility, diagonal);
+        if (preconditions) preconditioner.build(system, mobility, diagonal);
         system.add_response_diagonal(mobility, diagonal);
     }
     const auto answer_impulses = [&](std::span<const Wrench> impulses, std::span<Twist> answers) {
@@ -178,7 +190,7 @@ void FluidWorld::Impl::solve_velocities(const PressureSystem& system, double dt,
     };
     const OwnerResponse response = answer_impulses;
     pressure_operator.bind(system, is_strong() ? &response : nullptr, owners());
-    if (is_strong() && is_krylov) pressure_operator.set_preconditioner(&preconditioner);
+    if (is_strong() && preconditions) pressure_operator.set_preconditioner(&preconditioner);
     SolveGoal goal;
     goal.scale = dt / rho0;
     goal.tolerance =

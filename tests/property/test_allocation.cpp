@@ -104,7 +104,7 @@ TEST_CASE("a step allocates nothing once a run is warm", "[allocation]")
 {
     using Solver = PressureSettings::Solver;
     using Source = PressureSettings::Source;
-    const Solver solver = GENERATE(Solver::iisph, Solver::mprgp);
+    const Solver solver = GENERATE(Solver::iisph, Solver::mprgp, Solver::spg);
     const Source source = GENERATE(Source::split, Source::published);
     const int threads = GENERATE(1, 2);
     FluidWorld fluid(settings_for(threads, solver, source));
@@ -121,7 +121,7 @@ TEST_CASE("a step allocates nothing once a run is warm", "[allocation]")
         if (count > 0 && worst_step < 0) worst_step = k;
         total += count;
     }
-    CAPTURE(threads, stopped, worst_step, solver == Solver::mprgp, source == Source::published);
+    CAPTURE(threads, stopped, worst_step, static_cast<int>(solver), source == Source::published);
     REQUIRE(fluid.fluid_wrench(0).linear.norm() > 0.0); // the body floats in it
     CHECK(total == 0);
 }

@@ -83,7 +83,7 @@ struct MovingBox {
 TEST_CASE("fluid and body exchange equal and opposite momentum", "[coupling][property]")
 {
     const Source source = GENERATE(Source::split, Source::published);
-    const Solver solver = GENERATE(Solver::iisph, Solver::mprgp);
+    const Solver solver = GENERATE(Solver::iisph, Solver::mprgp, Solver::spg);
     const double density = GENERATE(1.0, 100.0, 1000.0, 8000.0); // foam, cork, neutral, steel [kg/m^3]
     MovingBox scene(density, source, solver);
     const Momentum before = scene.total(), box_before = momentum(scene.bodies.bodies[0]);
@@ -91,7 +91,10 @@ TEST_CASE("fluid and body exchange equal and opposite momentum", "[coupling][pro
     const Momentum given = momentum(scene.bodies.bodies[0]) - box_before;
     const Momentum lost = scene.total() - before;
     INFO("density " << density << ", source " << (source == Source::split ? "split" : "published") << ", solver "
-                    << (solver == Solver::iisph ? "iisph" : "mprgp") << ", stopped by the guard " << scene.stopped);
+                    << (solver == Solver::iisph   ? "iisph"
+                        : solver == Solver::mprgp ? "mprgp"
+                                                  : "spg")
+                    << ", stopped by the guard " << scene.stopped);
     INFO("shifts " << scene.shifts << ", lost in them " << scene.lost_in_shifts.norm() / given.angular.norm());
     INFO("given " << given.linear.norm() << " N s, lost " << lost.linear.norm() / given.linear.norm() << " of it");
     INFO("given " << given.angular.norm() << " N m s, lost " << lost.angular.norm() / given.angular.norm() << " of it");

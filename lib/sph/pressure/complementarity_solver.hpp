@@ -74,4 +74,33 @@ class Mprgp final : public ComplementaritySolver {
     std::vector<Sums> pair_sums_;
 };
 
+/// Projected gradient whose step length is the inverse curvature that the last step met. With s the last step of x and
+/// y = A s its change of the gradient g,
+///
+///     x <- max(0, x - t D^-1 g),   t = s . y / y . D^-1 y   (over the particles that are or become free)
+///
+/// One product with A an iteration, whatever the bounds do: where the free surface moves, a conjugate gradient method
+/// stops at the first particle that loses its pressure, and pays two. The residual may rise on the way; if it finds no
+/// new minimum for long, MPRGP goes on.
+/// **Source:** Barzilai & Borwein 1988, the second of their lengths; Birgin, Martinez & Raydan 2000 for the projection.
+/// **Differs:** no line search (Dai & Fletcher 2005 show that it may then cycle: hence MPRGP).
+class SpectralGradient final : public ComplementaritySolver {
+  public:
+    SolveResult solve(PressureOperator& op, std::span<const Scalar> b, std::span<const Scalar> diagonal,
+                      const SolveGoal& goal, std::span<Scalar> x) override;
+
+  private:
+    struct Sums {
+        double step_gradient = 0.0; ///< s . y
+        double gradient_sq = 0.0;   ///< y . D^-1 y
+        double residual = 0.0;
+        Sums& operator+=(const Sums& other);
+    };
+    LargestEigenvalue largest_eigenvalue_;
+    double largest_curvature_ = 0.0; ///< of D^-1 A, met lately; 0: none yet
+    std::vector<Scalar> gradient_, step_, product_;
+    std::vector<Sums> sums_;
+    Mprgp fallback_;
+};
+
 } // namespace flotsam

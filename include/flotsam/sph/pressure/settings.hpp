@@ -4,7 +4,7 @@ namespace flotsam {
 
 /// How the pressure system is solved. Every field changes the result of a step.
 struct PressureSettings {
-    enum class Solver { iisph, mprgp } solver = Solver::mprgp;
+    enum class Solver { iisph, mprgp, spg } solver = Solver::spg;
     enum class Source { split, published } source = Source::split;
     enum class Coupling { strong, weak } coupling = Coupling::strong;
     double tolerance = 1e-3;          ///< of the density: mean residual / rest density [-], > 0
