@@ -6,20 +6,16 @@
 
 namespace flotsam {
 
-namespace {
-
-std::string quoted(const std::string& name)
+std::string csv_cell(const std::string& text)
 {
-    if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string result = "\"";
-    for (const char c : name) {
+    for (const char c : text) {
         if (c == '"') result += '"';
         result += c;
     }
     return result + '"';
 }
-
-} // namespace
 
 CsvWriter::CsvWriter(const std::filesystem::path& file, std::span<const std::string> columns) : columns_(columns.size())
 {
@@ -27,7 +23,7 @@ CsvWriter::CsvWriter(const std::filesystem::path& file, std::span<const std::str
     file_ = std::make_unique<OutputFile>(file, /*keep_if_unfinished=*/true);
     for (const std::string& name : columns) {
         if (!line_.empty()) line_ += ',';
-        line_ += quoted(name);
+        line_ += csv_cell(name);
     }
     file_->write(line_ + '\n');
     file_->flush();

@@ -1,4 +1,5 @@
 #include "flotsam/core/parallel.hpp"
+#include "flotsam/io/csv.hpp"
 #include "flotsam/io/output_directory.hpp"
 #include "flotsam/io/output_error.hpp"
 #include "flotsam/validation/validation.hpp"
@@ -48,13 +49,6 @@ std::string order(const ValidationResult& result, const ValidationCheck& check)
 
 // -- CSV --------------------------------------------------------------------------------------------------------------
 
-std::string quoted(const std::string& text)
-{
-    std::string result = "\"";
-    for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return result + "\"";
-}
-
 std::string csv_of(const std::vector<ValidationResult>& results)
 {
     std::ostringstream csv;
@@ -63,7 +57,7 @@ std::string csv_of(const std::vector<ValidationResult>& results)
     csv.precision(9);
     for (const ValidationResult& result : results)
         for (const ValidationCheck& c : result.checks)
-            csv << result.name << ',' << quoted(c.quantity) << ',' << quoted(c.unit) << ',' << c.resolution << ','
+            csv << result.name << ',' << csv_cell(c.quantity) << ',' << csv_cell(c.unit) << ',' << c.resolution << ','
                 << c.value << ',' << c.reference << ',' << c.tolerance << ',' << c.error() << ',' << error_percent(c)
                 << ',' << error_in_spacings(c) << ',' << order(result, c) << ',' << (c.passed() ? "yes" : "no") << ','
                 << c.simulated_seconds << ',' << c.wall_seconds << '\n';

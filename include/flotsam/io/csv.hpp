@@ -10,10 +10,13 @@ namespace flotsam {
 
 class OutputFile;
 
+/// As a cell of a table: text with a comma, a quote or a line break is quoted.
+/// **Source:** RFC 4180.
+[[nodiscard]] std::string csv_cell(const std::string& text);
+
 /// A table of numbers as text: a header row, then one row of values at a time.
 ///
-/// Nine significant digits with a decimal point in every locale; names with a comma, a quote or a line break are
-/// quoted.
+/// Nine significant digits with a decimal point in every locale; names as csv_cell has them.
 /// **Source:** RFC 4180. **Differs:** lines end in LF. Every row is handed to the system at once, so that a run that is
 /// cut short leaves the rows it got to.
 class CsvWriter {

@@ -33,6 +33,14 @@ TEST_CASE("a table reads back to nine digits", "[io][csv]")
     CHECK_FALSE(std::getline(lines, line));
 }
 
+TEST_CASE("cells of a table are quoted where they must be", "[io][csv]")
+{
+    CHECK(csv_cell("crate.x, no") == "\"crate.x, no\"");
+    CHECK(csv_cell("said \"so\"") == "\"said \"\"so\"\"\"");
+    CHECK(csv_cell("two\nlines") == "\"two\nlines\"");
+    for (const char* plain : {"", "crate.x", "angle [deg]; 1.5"}) CHECK(csv_cell(plain) == plain);
+}
+
 TEST_CASE("each row is on disk as soon as it is written", "[io][csv]")
 {
     const Scratch scratch;
