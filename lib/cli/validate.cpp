@@ -1,11 +1,13 @@
 #include "cli/validate.hpp"
 
 #include "flotsam/core/contracts.hpp"
+#include "flotsam/scene/run_scene.hpp"
 #include "flotsam/validation/validation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <new>
 #include <ostream>
 
 namespace flotsam::cli {
@@ -44,6 +46,18 @@ std::string error_of(const ValidationCheck& check)
     return formatted("%+8.2g", check.error()) + std::string(2, ' ');
 }
 
+/// Runs a case. What ends it is said with its name: there is no file to name.
+ValidationResult result_of(const std::string& name, const ValidationOptions& options)
+{
+    try {
+        return run_validation_case(name, options);
+    } catch (const std::bad_alloc&) {
+        throw RunFailure("validation case " + name + ": the memory ran out");
+    } catch (const std::exception& error) {
+        throw RunFailure("validation case " + name + ": " + error.what());
+    }
+}
+
 void print(std::ostream& stream, const ValidationResult& result)
 {
     for (const ValidationCheck& check : result.checks)
@@ -68,7 +82,7 @@ int validate(std::ostream& stream, const Arguments& arguments)
     for (const ValidationCaseInfo& info : cases) {
         stream << info.name << ": " << info.title << formatted(" (up to %.0f s on two cores)\n", info.time_limit)
                << std::flush;
-        const ValidationResult result = run_validation_case(info.name, options);
+        const ValidationResult result = result_of(info.name, options);
         print(stream, result);
         made += static_cast<int>(result.checks.size());
         outside += static_cast<int>(std::count_if(result.checks.begin(), result.checks.end(),

@@ -32,3 +32,12 @@ TEST_CASE("validate refuses cases that there are none of, and files in the place
     CHECK(contains(names, "there is no validation case \"sinking\"; there are "));
     CHECK(contains(names, "square_log, "));
 }
+
+TEST_CASE("a validation case that cannot be run is named", "[cli][validate]")
+{
+    const TemporaryDirectory directory("flotsam_cli_validate_failed");
+    const Outcome failed = run_program(directory, "validate square_log --quick --out out", "TMPDIR=/nowhere/at/all");
+    INFO(failed.out << failed.err);
+    CHECK(failed.code == 1);
+    CHECK(failed.err.rfind("error: validation case square_log: ", 0) == 0);
+}
