@@ -69,30 +69,56 @@ std::optional<double> level_at(const PreparedScene& prepared, const Aabb& body)
     return level;
 }
 
-/// Whether two bodies come closer than half a spacing.
-bool touch(const PreparedBody& a, const PreparedBody& b, const SceneFile& scene)
-{
-    const double gap = 0.5 * scene.particle_spacing;
-    const Aabb near_a = reach_of(a).inflated(gap), of_b = reach_of(b);
-    if ((near_a.min.array() > of_b.max.array()).any() || (near_a.max.array() < of_b.min.array()).any()) return false;
-    const SurfaceQuery query(a.mesh);
-    const double edge = std::max(scene.particle_spacing, bounds(b.mesh).size().maxCoeff() / 64.0);
-    const std::vector<Vec3d> points = refined(b.mesh, edge).vertices;
-    return std::any_of(points.begin(), points.end(), [&](const Vec3d& vertex) {
-        Vec3d point = b.start.to_world(vertex);
-        if (scene.dimensions == 2) point.y() = 0.0; // away from the ends
-        return near_a.contains(point) && query.signed_distance(a.start.to_body(point)) < gap;
-    });
-}
+/// Tells which bodies touch. What it takes is made for a body when it is first asked for, and once.
+class Touching {
+  public:
+    Touching(const SceneFile& scene, const PreparedScene& prepared)
+        : scene_(scene), bodies_(prepared.bodies), queries_(bodies_.size()), points_(bodies_.size())
+    {
+    }
 
-/// Another body that body k touches; nothing if there is none.
-const PreparedBody* neighbour_of(std::size_t k, const SceneFile& scene, const PreparedScene& prepared)
-{
-    const PreparedBody& body = prepared.bodies[k];
-    for (const PreparedBody& other : prepared.bodies)
-        if (&other != &body && (touch(body, other, scene) || touch(other, body, scene))) return &other;
-    return nullptr;
-}
+    /// Another body that body k touches; nothing if there is none.
+    const PreparedBody* neighbour_of(std::size_t k)
+    {
+        for (std::size_t other = 0; other < bodies_.size(); ++other)
+            if (other != k && (touch(k, other) || touch(other, k))) return &bodies_[other];
+        return nullptr;
+    }
+
+  private:
+    /// Whether a point of body b comes closer to body a than half a spacing.
+    bool touch(std::size_t a, std::size_t b)
+    {
+        const double gap = 0.5 * scene_.particle_spacing;
+        const Aabb near_a = reach_of(bodies_[a]).inflated(gap), of_b = reach_of(bodies_[b]);
+        if ((near_a.min.array() > of_b.max.array()).any() || (near_a.max.array() < of_b.min.array()).any())
+            return false;
+        const SurfaceQuery& surface = query(a);
+        const std::vector<Vec3d>& of_surface = points(b);
+        return std::any_of(of_surface.begin(), of_surface.end(), [&](const Vec3d& point_body) {
+            Vec3d point = bodies_[b].start.to_world(point_body);
+            if (scene_.dimensions == 2) point.y() = 0.0; // away from the ends
+            return near_a.contains(point) && surface.signed_distance(bodies_[a].start.to_body(point)) < gap;
+        });
+    }
+    const SurfaceQuery& query(std::size_t k)
+    {
+        if (!queries_[k]) queries_[k].emplace(bodies_[k].mesh);
+        return *queries_[k];
+    }
+    const std::vector<Vec3d>& points(std::size_t k)
+    {
+        const TriangleMesh& mesh = bodies_[k].mesh;
+        const double edge = std::max(scene_.particle_spacing, bounds(mesh).size().maxCoeff() / 64.0);
+        if (points_[k].empty()) points_[k] = refined(mesh, edge).vertices;
+        return points_[k];
+    }
+
+    const SceneFile& scene_;
+    const std::vector<PreparedBody>& bodies_;
+    std::vector<std::optional<SurfaceQuery>> queries_;
+    std::vector<std::vector<Vec3d>> points_; ///< body frames
+};
 
 bool is_within_walls(const SceneFile& scene, const PreparedScene& prepared, const PreparedBody& body)
 {
@@ -111,19 +137,19 @@ bool is_joined(std::size_t k, const SceneFile& scene)
 }
 
 /// Moves a body that floats; returns why it was not.
-std::string float_body(std::size_t k, const SceneFile& scene, PreparedScene& prepared)
+std::string float_body(std::size_t k, const SceneFile& scene, PreparedScene& prepared, Touching& touching)
 {
     PreparedBody& body = prepared.bodies[k];
     if (is_joined(k, scene)) return "a joint holds it";
     if (scene.bodies[k].lock[2]) return "it is locked along z";
-    if (const PreparedBody* other = neighbour_of(k, scene, prepared)) return "it touches " + other->name;
+    if (const PreparedBody* other = touching.neighbour_of(k)) return "it touches " + other->name;
     const std::optional<double> level = level_at(prepared, reach_of(body));
     if (!level) return "no block or mesh of fluid is under its middle";
     const Pose given = body.start;
     std::string obstacle;
     for (const Pose& pose : poses_afloat(body, scene.bodies[k].lock, scene, *level)) {
         body.start = pose;
-        const PreparedBody* other = neighbour_of(k, scene, prepared);
+        const PreparedBody* other = touching.neighbour_of(k);
         if (other == nullptr && is_within_walls(scene, prepared, body)) return {};
         obstacle = "where it would float it meets " + (other != nullptr ? other->name : "a wall");
     }
@@ -153,12 +179,13 @@ std::string note_of_move(const PreparedBody& body, const Pose& given, double spa
 void float_bodies(const SceneFile& scene, PreparedScene& prepared)
 {
     if (!is_level(scene.gravity)) return;
+    Touching touching(scene, prepared);
     for (std::size_t k = 0; k < prepared.bodies.size(); ++k) {
         const PreparedBody& body = prepared.bodies[k];
         const bool floats = body.mass < scene.fluid.density * body.volume;
         if (scene.bodies[k].motion != SceneBody::Motion::dynamic || !floats) continue;
         const Pose given = body.start;
-        const std::string obstacle = float_body(k, scene, prepared);
+        const std::string obstacle = float_body(k, scene, prepared, touching);
         const std::string note = note_of_move(body, given, scene.particle_spacing);
         if (!obstacle.empty())
             prepared.notes.push_back(body.name + " stays as given in a scene that starts at rest: " + obstacle);
