@@ -33,7 +33,26 @@ std::string state_words(const RunProgress& progress)
     return text.str();
 }
 
+std::string settle_words(const SettleProgress& progress)
+{
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(1) << "settling the water: round " << progress.rounds << " of at most "
+         << progress.most_rounds << ", " << 1000.0 * progress.speed << " mm/s (at rest below "
+         << 1000.0 * progress.still_speed << ")";
+    return text.str();
+}
+
 } // namespace
+
+void Progress::on_settle(const SettleProgress& progress)
+{
+    if (is_terminal_) {
+        out_ << "\r" << settle_words(progress) << "\033[K" << std::flush;
+        if (progress.is_last) out_ << std::endl;
+    } else if (progress.is_last || progress.rounds % (progress.most_rounds / 10) == 0) {
+        out_ << settle_words(progress) << std::endl;
+    }
+}
 
 void Progress::on_start(std::size_t fluid_particles, std::size_t boundary_samples,
                         const std::vector<std::string>& notes)

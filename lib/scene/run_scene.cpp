@@ -173,7 +173,8 @@ RunReport run_scene(const SceneFile& file, const RunOptions& options, RunObserve
     const scene::PreparedScene prepared = scene::prepare_and_check(file);
     std::optional<OutputDirectory> out;
     if (!options.out.empty()) out.emplace(options.out);
-    scene::SceneWorld world(file, prepared, options.threads);
+    scene::SceneWorld world(file, prepared, options.threads,
+                            [&](const SettleProgress& progress) { observer.on_settle(progress); });
     scene::Run run(file, prepared, world, options, observer);
     observer.on_start(world.fluid().fluid().size(), world.fluid().boundary().size(), run.report("").notes);
     try {

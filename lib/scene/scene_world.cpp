@@ -71,7 +71,8 @@ std::unique_ptr<btRigidBody> body_of(const SceneFile& scene, const SceneBody& bo
 
 } // namespace
 
-SceneWorld::SceneWorld(const SceneFile& scene, const PreparedScene& prepared, int threads)
+SceneWorld::SceneWorld(const SceneFile& scene, const PreparedScene& prepared, int threads,
+                       const std::function<void(const SettleProgress&)>& on_settle)
     : fluid_(fluid_settings(scene, threads)), dispatcher_(&configuration_),
       world_(&dispatcher_, &broadphase_, &solver_, &configuration_),
       coupling_(std::make_unique<BulletCoupling>(fluid_, world_))
@@ -88,7 +89,7 @@ SceneWorld::SceneWorld(const SceneFile& scene, const PreparedScene& prepared, in
     add_bodies(scene, prepared);
     add_joints(scene);
     world_.performDiscreteCollisionDetection(); // so that the first step knows what lies on what
-    fluid_.prepare(coupling_->bodies());
+    fluid_.prepare(coupling_->bodies(), on_settle);
     if (fluid_.fluid().size() == 0)
         throw InputError(scene.file.string() + ": no fluid is left within the walls and outside the bodies");
 }

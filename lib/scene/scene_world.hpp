@@ -5,6 +5,7 @@
 #include "scene/bullet_shapes.hpp"
 #include "scene/prepared_scene.hpp"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -19,7 +20,9 @@ struct BodyNow {
 /// The fluid and the Bullet world of a scene, coupled.
 class SceneWorld {
   public:
-    SceneWorld(const SceneFile& scene, const PreparedScene& prepared, int threads);
+    /// `on_settle`: as FluidWorld::prepare takes it.
+    SceneWorld(const SceneFile& scene, const PreparedScene& prepared, int threads,
+               const std::function<void(const SettleProgress&)>& on_settle = {});
     ~SceneWorld();
     SceneWorld(const SceneWorld&) = delete;
     SceneWorld& operator=(const SceneWorld&) = delete;

@@ -137,9 +137,9 @@ void FluidWorld::name_body(int body, const std::string& name)
     impl_->body(body).name = name;
 }
 
-void FluidWorld::prepare(Bodies& bodies)
+void FluidWorld::prepare(Bodies& bodies, const std::function<void(const SettleProgress&)>& on_round)
 {
-    impl_->prepare(bodies);
+    impl_->prepare(bodies, on_round);
 }
 
 /// Pressure forces are explicit in the direction that they act in: a packing under pressure p answers sideways with

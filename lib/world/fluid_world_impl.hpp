@@ -154,7 +154,7 @@ struct FluidWorld::Impl {
     void visit_pushes(std::size_t owner, Visit&& visit) const;
 
     // prepare.cpp
-    void prepare(Bodies& port);
+    void prepare(Bodies& port, const std::function<void(const SettleProgress&)>& on_round = {});
     void choose_wall_sides();
     void seed_where_dry(FluidSeed seed);
     void cut_and_place_fluid();
@@ -168,8 +168,8 @@ struct FluidWorld::Impl {
     [[nodiscard]] bool in_body(std::size_t k, const Pose& pose, const Vec3d& point) const;
 
     // settle.cpp
-    void settle();
-    [[nodiscard]] double settle_round(double dt);
+    void settle(const std::function<void(const SettleProgress&)>& on_round);
+    [[nodiscard]] double settle_round(double dt, Bodies& held);
     [[nodiscard]] bool is_carried(std::size_t i) const;
 
     // change_bodies.cpp

@@ -37,7 +37,7 @@ bool is_closed(const TriangleMesh& mesh)
 
 } // namespace
 
-void FluidWorld::Impl::prepare(Bodies& port)
+void FluidWorld::Impl::prepare(Bodies& port, const std::function<void(const SettleProgress&)>& on_round)
 {
     if (prepared) return;
     prepared = true;
@@ -54,7 +54,7 @@ void FluidWorld::Impl::prepare(Bodies& port)
     guard.build(surfaces, spacing(), workers);
     place_body_samples();
     relax(60);
-    if (settings.start == FluidWorldSettings::Start::at_rest) settle();
+    if (settings.start == FluidWorldSettings::Start::at_rest) settle(on_round);
 }
 
 void FluidWorld::Impl::choose_wall_sides()

@@ -14,25 +14,9 @@ constexpr int kFewestRounds = 20, kMostRounds = 400;
 /// left.
 constexpr double kStill = 0.004, kFlows = 0.06;
 
-/// Bodies that stand still, whatever pushes them.
-class HeldBodies final : public Bodies {
-  public:
-    explicit HeldBodies(std::size_t count) : count_(count) {}
-    [[nodiscard]] std::size_t size() const override { return count_; }
-    void read(double, std::span<BodyState>) override {}
-    void respond(std::span<const Wrench>, std::span<Twist> twists) const override
-    {
-        std::fill(twists.begin(), twists.end(), Twist{});
-    }
-    void apply(std::span<const Wrench>) override {}
-
-  private:
-    std::size_t count_;
-};
-
 } // namespace
 
-void FluidWorld::Impl::settle()
+void FluidWorld::Impl::settle(const std::function<void(const SettleProgress&)>& on_round)
 {
     const double g = settings.gravity.norm();
     if (fluid.size() == 0 || !(g > 0.0)) return;
@@ -45,14 +29,22 @@ void FluidWorld::Impl::settle()
     max_pressure = std::max(max_pressure, settings.rest_density * g * spacing()); // of a single layer it would be 0
     const double dt = pressure_time_step();
     const double free_fall = std::sqrt(g * spacing()); // from half a spacing up [m/s]
-    double speed = free_fall;
-    for (int round = 0; round < kMostRounds && !(round >= kFewestRounds && speed < kStill * free_fall); ++round)
-        speed = settle_round(dt);
-    if (speed > kFlows * free_fall) {
+    std::vector<Pose> poses;
+    for (const BodyState& state : states) poses.push_back(state.pose);
+    HeldBodies held(std::move(poses));
+    SettleProgress progress{0, kMostRounds, free_fall, kStill * free_fall, false};
+    while (!progress.is_last) {
+        progress.speed = settle_round(dt, held);
+        ++progress.rounds;
+        progress.is_last = progress.rounds == kMostRounds ||
+                           (progress.rounds >= kFewestRounds && progress.speed < progress.still_speed);
+        if (on_round) on_round(progress);
+    }
+    if (progress.speed > kFlows * free_fall) {
         std::ostringstream note;
         note.precision(2);
-        note << "the water was to start at rest, and does not rest as it was given: it still flowed at " << speed
-             << " m/s when it was let go";
+        note << "the water was to start at rest, and does not rest as it was given: it still flowed at "
+             << progress.speed << " m/s when it was let go";
         notes.push_back(note.str());
     }
     std::fill(fluid.velocity.begin(), fluid.velocity.end(), Vec4(Vec4::Zero()));
@@ -63,9 +55,8 @@ void FluidWorld::Impl::settle()
 }
 
 /// A damped step of `dt` with the bodies held; returns the mean speed [m/s]. Viscosity would only lengthen the way.
-double FluidWorld::Impl::settle_round(double dt)
+double FluidWorld::Impl::settle_round(double dt, Bodies& held)
 {
-    HeldBodies held(bodies.size());
     StepReport ignored;
     find_neighbours();
     measure_density(ignored);

@@ -25,6 +25,8 @@ struct RunProgress {
 class RunObserver {
   public:
     virtual ~RunObserver() = default;
+    /// Before on_start, while the water of a scene that starts at rest is brought there: after each round.
+    virtual void on_settle(const SettleProgress&) {}
     /// Once, before the first step.
     virtual void on_start(std::size_t fluid_particles, std::size_t boundary_samples,
                           const std::vector<std::string>& notes) = 0;

@@ -2,8 +2,11 @@
 
 #include "flotsam/core/types.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace flotsam {
 
@@ -53,6 +56,26 @@ class NoBodies final : public Bodies {
     void read(double, std::span<BodyState>) override {}
     void respond(std::span<const Wrench>, std::span<Twist>) const override {}
     void apply(std::span<const Wrench>) override {}
+};
+
+/// Bodies that stand still, whatever pushes them.
+class HeldBodies final : public Bodies {
+  public:
+    /// Of their centre-of-mass frames.
+    explicit HeldBodies(std::vector<Pose> poses) : poses_(std::move(poses)) {}
+    [[nodiscard]] std::size_t size() const override { return poses_.size(); }
+    void read(double, std::span<BodyState> states) override
+    {
+        for (std::size_t k = 0; k < poses_.size(); ++k) states[k] = {poses_[k], Twist{}, false};
+    }
+    void respond(std::span<const Wrench>, std::span<Twist> twists) const override
+    {
+        std::fill(twists.begin(), twists.end(), Twist{});
+    }
+    void apply(std::span<const Wrench>) override {}
+
+  private:
+    std::vector<Pose> poses_;
 };
 
 } // namespace flotsam

@@ -11,6 +11,7 @@
 #include "flotsam/world/step_report.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -89,7 +90,8 @@ class FluidWorld {
     /// last pressure is the start of the first step's solve. Water that nothing carries, a drop in the air, waits where
     /// it is, as do single particles. What cannot come to rest (a dam about to break) flows on for as long, and a note
     /// says so. Nothing is done without gravity. Same bits for any number of threads; costs about as much as 300 steps.
-    void prepare(Bodies& bodies);
+    /// `on_round`, if there is one, is called after each of them.
+    void prepare(Bodies& bodies, const std::function<void(const SettleProgress&)>& on_round = {});
 
     // -- stepping -------------------------------------------------------------------------------------------------
     /// The largest step that settings.max_time_step, CFL and viscosity allow now [s].

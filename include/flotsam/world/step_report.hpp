@@ -39,4 +39,12 @@ struct StepReport {
     StageSeconds seconds;
 };
 
+/// How far water that starts at rest is on its way there.
+struct SettleProgress {
+    int rounds = 0, most_rounds = 0; ///< made, and how many there may be
+    double speed = 0.0;              ///< mean of the water in the last of them [m/s]
+    double still_speed = 0.0;        ///< under which it counts as still [m/s]
+    bool is_last = false;            ///< no round comes after this one
+};
+
 } // namespace flotsam

@@ -74,6 +74,19 @@ TEST_CASE("run records, prints plain lines and ends in the table of drafts", "[c
     CHECK(run_program(directory, "run scene.json --quiet --out again --threads 2").out.empty());
 }
 
+TEST_CASE("run says how water comes to rest before it starts", "[cli]")
+{
+    const TemporaryDirectory directory("flotsam_cli_rest");
+    directory.write("scene.json", kRaft);
+    const Outcome run = run_program(directory, "run scene.json --set start=at_rest --set duration=0.01 --threads 2");
+    INFO(run.out << run.err);
+    CHECK(run.code == 0);
+    CHECK(run.out.rfind("settling the water: round 40 of at most 400, ", 0) == 0);
+    CHECK(run.out.find("settling the water") < run.out.find("fluid particles"));
+    CHECK_FALSE(contains(run.out, "\r"));
+    CHECK(run_program(directory, "run scene.json --set start=at_rest --quiet --out again --threads 2").out.empty());
+}
+
 TEST_CASE("check says what a scene holds", "[cli]")
 {
     const TemporaryDirectory directory("flotsam_cli_check");

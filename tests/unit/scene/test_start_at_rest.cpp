@@ -174,3 +174,19 @@ TEST_CASE("a run that starts at rest reports bodies where they float", "[scene][
     CHECK(rest.bodies[0].draft.value() == Approx(rest.bodies[0].exact_draft.value()).margin(0.005)); // d / 4
     CHECK(ran("at_rest", 3).state_hash == rest.state_hash);
 }
+
+TEST_CASE("an observer is told how the water comes to rest, before the run starts", "[scene][rest]")
+{
+    struct Watcher final : RunObserver {
+        int rounds = 0, rounds_at_start = 0;
+        void on_settle(const SettleProgress& progress) override { rounds = progress.rounds; }
+        void on_start(std::size_t, std::size_t, const std::vector<std::string>&) override { rounds_at_start = rounds; }
+        void on_step(const RunProgress&) override {}
+    };
+    Watcher given, rest;
+    run_scene(parsed(kRaft, {"duration=0.01"}), {{}, 1}, given);
+    run_scene(parsed(kRaft, {"duration=0.01", "start=at_rest"}), {{}, 1}, rest);
+    CHECK(given.rounds == 0);
+    CHECK(rest.rounds_at_start >= 20);
+    CHECK(rest.rounds == rest.rounds_at_start);
+}

@@ -106,6 +106,27 @@ TEST_CASE("water that starts at rest is still, level and heavy from the first st
     CHECK(rest.pressure == Approx(1000.0 * kGravity * 0.5 * depth).epsilon(0.03)); // as pressures tremble
 }
 
+TEST_CASE("whoever waits for water to come to rest is told after each round", "[world][settle]")
+{
+    FluidWorld watched = tank(settings_for(Start::at_rest)), alone = tank(settings_for(Start::at_rest));
+    NoBodies none;
+    std::vector<SettleProgress> told;
+    watched.prepare(none, [&](const SettleProgress& progress) { told.push_back(progress); });
+    alone.prepare(none);
+    CHECK(watched.state_hash() == alone.state_hash());
+    REQUIRE(told.size() > 20);
+    for (std::size_t k = 0; k < told.size(); ++k) {
+        CHECK(told[k].rounds == static_cast<int>(k) + 1);
+        CHECK(told[k].is_last == (k + 1 == told.size()));
+    }
+    CHECK(told.back().rounds < told.back().most_rounds); // it came to rest
+    CHECK(told.back().speed < told.back().still_speed);
+    CHECK(told.front().speed > told.front().still_speed);
+
+    FluidWorld given = tank(settings_for(Start::as_given));
+    given.prepare(none, [](const SettleProgress&) { FAIL("nothing is brought to rest"); });
+}
+
 TEST_CASE("bodies stand still while water comes to rest around them", "[world][settle]")
 {
     const auto settings = settings_for(Start::at_rest);
