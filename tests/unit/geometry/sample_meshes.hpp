@@ -92,33 +92,6 @@ inline TriangleMesh angle_bar(double size, double half)
     return prism(outline, half);
 }
 
-/// y = (B/2)(1 - (2x/L)^2)(1 - (z/T)^2), -T <= z <= 0, closed by a deck at z = 0.
-inline TriangleMesh wigley_hull(double length, double breadth, double depth, int nx, int nz)
-{
-    TriangleMesh hull;
-    const auto half_breadth = [&](double x, double z) {
-        return 0.5 * breadth * (1 - std::pow(2 * x / length, 2)) * (1 - std::pow(z / depth, 2));
-    };
-    const auto vertex = [&](int i, int k, int side) {
-        const double x = length * (static_cast<double>(i) / nx - 0.5);
-        const double z = depth * (static_cast<double>(k) / nz - 1.0);
-        hull.vertices.emplace_back(x, side * half_breadth(x, z), z);
-        return static_cast<int>(hull.vertices.size()) - 1;
-    };
-    const auto quad = [&](int a, int b, int c, int d) {
-        hull.triangles.push_back({a, b, c});
-        hull.triangles.push_back({a, c, d});
-    };
-    for (int i = 0; i < nx; ++i) {
-        for (int k = 0; k < nz; ++k) {
-            quad(vertex(i, k, -1), vertex(i + 1, k, -1), vertex(i + 1, k + 1, -1), vertex(i, k + 1, -1));
-            quad(vertex(i + 1, k, 1), vertex(i, k, 1), vertex(i, k + 1, 1), vertex(i + 1, k + 1, 1));
-        }
-        quad(vertex(i, nz, -1), vertex(i + 1, nz, -1), vertex(i + 1, nz, 1), vertex(i, nz, 1));
-    }
-    return hull;
-}
-
 /// Closed cone with its tip, downward, at the origin and its flat top at z = height.
 inline TriangleMesh cone(double radius, double height, int corners)
 {

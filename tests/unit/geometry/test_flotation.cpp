@@ -123,7 +123,7 @@ TEST_CASE("the righting arms of held boxes are the tabulated ones", "[geometry][
 TEST_CASE("a righting moment is the slope of the energy, an initial one the metacentric height",
           "[geometry][flotation]")
 {
-    FloatingBody hull = uniform(test_meshes::wigley_hull(2.0, 0.4, 0.25, 20, 10), 0.45);
+    FloatingBody hull = uniform(wigley_hull({2.0, 0.4, 0.25}, 20, 10), 0.45);
     hull.center_of_mass += Vec3d(0.03, 0.02, -0.05); // a list and a trim
     const Quatd upright_turn(Eigen::AngleAxisd(0.3, Vec3d(0.2, 0.1, 1.0).normalized()));
     const double step = 1e-4;

@@ -124,7 +124,7 @@ TEST_CASE("what is too heavy sinks, what displaces nothing lies on the water", "
 
 TEST_CASE("a Wigley hull at its waterline", "[geometry][hydrostatics]")
 {
-    const TriangleMesh hull = test_meshes::wigley_hull(2.0, 0.4, 0.25, 80, 80);
+    const TriangleMesh hull = wigley_hull({2.0, 0.4, 0.25}, 80, 80);
     const Submerged part = submerged_part(hull, Pose{}, 0.0);
     // Flat facets on a hull with 80 stations: below 1e-3 of the closed form.
     CHECK(part.volume == Approx(4.0 / 9.0 * 2.0 * 0.4 * 0.25).epsilon(1e-3));

@@ -1,8 +1,10 @@
 #include "flotsam/geometry/mass_properties.hpp"
+#include "flotsam/geometry/mesh_check.hpp"
 #include "flotsam/geometry/shapes.hpp"
 #include "flotsam/geometry/triangle_mesh.hpp"
 #include "support/catch.hpp"
 
+#include <limits>
 #include <map>
 
 using namespace flotsam;
@@ -138,6 +140,37 @@ TEST_CASE("shapes refuse sizes that are not positive", "[geometry]")
     CHECK_THROWS_AS(tessellate(DiscShape{1}, 0), std::invalid_argument);
     CHECK_THROWS_WITH(tessellate(SphereShape{1}, 1e-6),
                       "max_edge must be at least 1/5000 of the sphere radius, given 1e-06");
+}
+
+TEST_CASE("a Wigley hull is closed, whatever its stations, and its vertices lie on it", "[geometry]")
+{
+    const double freeboard = GENERATE(0.0, 0.07);
+    const int stations = GENERATE(2, 3, 12), levels = GENERATE(1, 4);
+    const WigleyHull sizes{1.0, 0.2, 0.1, freeboard};
+    TriangleMesh hull = wigley_hull(sizes, stations, levels);
+    CAPTURE(freeboard, stations, levels);
+    CHECK(is_watertight(hull));
+    CHECK(bounds(hull).min.z() == Approx(-0.1));
+    CHECK(bounds(hull).max.z() == Approx(freeboard).margin(1e-12));
+    for (const Vec3d& v : hull.vertices) {
+        const double below = std::min(v.z(), 0.0) / sizes.draft, along = 2.0 * v.x() / sizes.length;
+        CHECK(std::abs(v.y()) == Approx(0.1 * (1.0 - along * along) * (1.0 - below * below)).margin(1e-12));
+    }
+    const MeshCheckReport found = check_mesh(hull);
+    CHECK(found.parts == 1);
+    CHECK(found.welded_vertices == 0);
+    CHECK(found.dropped_triangles == 0);
+    CHECK(found.flipped_triangles == 0);
+}
+
+TEST_CASE("a Wigley hull refuses sizes that are not positive and too few pieces", "[geometry]")
+{
+    CHECK_THROWS_WITH(wigley_hull({0.0, 0.2, 0.1}, 8, 4), "the length of a hull must be > 0 m and finite, given 0");
+    CHECK_THROWS_AS(wigley_hull({1.0, -0.2, 0.1}, 8, 4), std::invalid_argument);
+    CHECK_THROWS_AS(wigley_hull({1.0, 0.2, std::numeric_limits<double>::quiet_NaN()}, 8, 4), std::invalid_argument);
+    CHECK_THROWS_AS(wigley_hull({1.0, 0.2, 0.1, -0.01}, 8, 4), std::invalid_argument);
+    CHECK_THROWS_AS(wigley_hull({}, 1, 4), std::invalid_argument);
+    CHECK_THROWS_AS(wigley_hull({}, 8, 0), std::invalid_argument);
 }
 
 TEST_CASE("a container has its closed sides only, facing away from the water", "[geometry]")

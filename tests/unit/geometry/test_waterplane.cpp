@@ -124,7 +124,7 @@ TEST_CASE("the waterplane of a Wigley hull", "[geometry][hydrostatics]")
 {
     const double L = 2.0, B = 0.4;
     const auto error = [&](int stations) {
-        const Waterplane plane = waterplane(test_meshes::wigley_hull(L, B, 0.25, stations, stations), Pose{}, 0.0);
+        const Waterplane plane = waterplane(wigley_hull({L, B, 0.25}, stations, stations), Pose{}, 0.0);
         CHECK(plane.centroid.norm() < 1e-12);
         CHECK(plane.area == Approx(2.0 / 3.0 * L * B).epsilon(4.0 / stations / stations));
         return (plane.second_moment - diagonal(B * L * L * L / 30, 4.0 / 105 * L * B * B * B))
