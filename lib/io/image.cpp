@@ -15,7 +15,7 @@ Image::Image(int width_pixels, int height_pixels) : width(width_pixels), height(
     rgb.resize(std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
 }
 
-void write_png(const std::filesystem::path& file, const Image& image)
+std::vector<std::uint8_t> png_of(const Image& image)
 {
     require(!image.rgb.empty(), "a picture must have pixels to be written");
     png_image png{};
@@ -25,12 +25,18 @@ void write_png(const std::filesystem::path& file, const Image& image)
     png.format = PNG_FORMAT_RGB;
     png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
     std::vector<std::uint8_t> encoded(bytes);
+    if (png_image_write_to_memory(&png, encoded.data(), &bytes, 0, image.rgb.data(), 0, nullptr) == 0)
+        throw OutputError(std::string("a picture cannot be encoded: ") + png.message);
+    encoded.resize(bytes);
+    return encoded;
+}
+
+void write_png(const std::filesystem::path& file, const Image& image)
+{
     // Encoded in memory first: libpng's own file writing does not report a disk that is full at close.
-    if (png_image_write_to_memory(&png, encoded.data(), &bytes, 0, image.rgb.data(), 0, nullptr) == 0) {
-        throw OutputError("cannot write " + file.string() + ": " + png.message);
-    }
+    const std::vector<std::uint8_t> encoded = png_of(image);
     OutputFile stream(file);
-    stream.write(encoded.data(), bytes);
+    stream.write(encoded.data(), encoded.size());
     stream.close();
 }
 

@@ -2,11 +2,13 @@
 
 #include "flotsam/core/contracts.hpp"
 #include "validation/scratch_directory.hpp"
+#include "validation/take_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <sstream>
 
@@ -39,6 +41,16 @@ std::map<std::string, std::vector<double>> read_history(const std::filesystem::p
     return columns;
 }
 
+/// The last picture of a run, by the names' order; empty where there is none.
+std::vector<std::uint8_t> last_picture(const std::filesystem::path& directory)
+{
+    std::filesystem::path last;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(directory, none)) last = std::max(last, entry.path());
+    std::ifstream stream(last, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
 RunReport run(std::string_view scene, const std::filesystem::path& out, const ValidationOptions& options)
 {
     SilentObserver observer;
@@ -53,6 +65,7 @@ RecordedRun run_recorded(std::string_view scene, const ValidationOptions& option
     RecordedRun recorded;
     recorded.report = run(scene, scratch.path() / "run", options);
     recorded.history = read_history(scratch.path() / "run" / "history.csv");
+    recorded.png = last_picture(scratch.path() / "run" / "pictures");
     return recorded;
 }
 
@@ -79,7 +92,11 @@ std::string TankScene::text() const
           << R"(, "fluids": [{"blocks": [{"min": )" << origin << R"(, "max": )" << corner(level)
           << R"(}]}], "walls": [{"box": {"min": )" << origin << R"(, "max": )" << corner(height)
           << R"(, "open": ["+z"]}}], "bodies": [)" << bodies << R"(], "output": {"frames_per_second": )"
-          << frames_per_second << "}}";
+          << frames_per_second;
+    if (has_picture)
+        scene << R"(, "pictures": {"width": )" << kPictureWidth << R"(, "height": )" << kPictureHeight
+              << R"(, "every": )" << std::lround(std::ceil(duration * frames_per_second)) << "}";
+    scene << "}}";
     return scene.str();
 }
 

@@ -41,10 +41,11 @@ struct Case {
 [[nodiscard]] std::span<const Case> fluid_cases();        // fluid_alone.cpp
 [[nodiscard]] std::span<const Case> conservation_cases(); // conservation.cpp
 
-/// What a run of a scene left: its report and the columns of its history.csv.
+/// What a run of a scene left: its report, the columns of its history.csv and the last of its pictures.
 struct RecordedRun {
     RunReport report;
     std::map<std::string, std::vector<double>> history;
+    std::vector<std::uint8_t> png; ///< empty where the scene asks for no pictures
 
     [[nodiscard]] const std::vector<double>& column(const std::string& name) const { return history.at(name); }
 };
@@ -63,6 +64,7 @@ struct TankScene {
            height = 0.0; ///< [m]; depth: along y, of no effect in 2-D
     double duration = 0.0, frames_per_second = 30.0;
     bool starts_at_rest = false;
+    bool has_picture = false; ///< of its end
     std::string bodies{};
 
     [[nodiscard]] std::string text() const;

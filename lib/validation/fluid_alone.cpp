@@ -2,6 +2,7 @@
 #include "validation/case.hpp"
 
 #include "flotsam/world/fluid_world.hpp"
+#include "validation/take_picture.hpp"
 
 #include <algorithm>
 #include <array>
@@ -126,6 +127,7 @@ void run_elliptic_drop(const ValidationOptions& options, ValidationResult& resul
             curve.y.push_back(result.checks.back().value);
         }
         chart.curves.push_back(curve);
+        result.pictures = {take_picture("the drop at A0 t = 1", water, {}, options)};
     }
     chart.curves.push_back(
         {"theory", ValidationCurve::Kind::reference, {times.begin(), times.end()}, {axis.begin(), axis.end()}});
@@ -245,6 +247,7 @@ void run_dam_break(const ValidationOptions& options, ValidationResult& result)
         };
         compare("Koshizuka & Oka", koshizuka_t, koshizuka_x);
         compare("Martin & Moyce", martin_t, martin_x);
+        result.pictures = {take_picture("the water at t sqrt(2 g / a) = 3.4", water, {}, options)};
         chart.curves.push_back(curve);
     }
     const auto experiment = [&](const char* who, std::span<const double> t, std::span<const double> x) {

@@ -56,12 +56,14 @@ void float_bodies(int dimensions, std::span<const DraftBody> bodies, std::span<c
                      << body.more << R"(, "position": [)" << 0.5 * tank.width << ", "
                      << (dimensions == 3 ? 0.5 * tank.depth : 0.0) << ", " << tank.level << "]}";
                 tank.bodies = text.str();
-                const RunReport report = run_unrecorded(tank.text(), options);
-                const BodyReport& end = report.bodies.front();
+                tank.has_picture = dimensions == 3 && ratio == 0.5;
+                const RecordedRun run = run_recorded(tank.text(), options);
+                const BodyReport& end = run.report.bodies.front();
                 const double draft = end.draft.value_or(NAN), exact = end.exact_draft.value_or(NAN);
                 const std::string quantity = at_ratio(body.name, ratio);
                 result.checks.push_back({quantity, "m", resolution, draft, exact, kBand * spacing, spacing,
-                                         report.simulated_seconds, report.wall_seconds});
+                                         run.report.simulated_seconds, run.report.wall_seconds});
+                if (tank.has_picture) result.pictures = {{quantity, run.png}};
                 ValidationCurve& curve = curves[quantity];
                 curve.label = quantity;
                 curve.x.push_back(resolution);
@@ -107,23 +109,24 @@ double folded(double angle)
 /// A box in 2-D, let go at its upright draft turned by 7 degrees: the mean of its angle over the last quarter.
 struct FloatingBox {
     double width = 0.2, height = 0.2, ratio = 0.5;
+    bool has_picture = false;
 };
 
 double final_angle(const FloatingBox& box, double spacing, double seconds, const ValidationOptions& options,
-                   RunReport& report)
+                   RecordedRun& run)
 {
     TankScene tank{.dimensions = 2, .spacing = spacing};
     tank.width = 6.0 * box.width;
     tank.level = 2.0 * std::max(box.width, box.height);
     tank.height = 2.0 * tank.level;
     tank.duration = seconds;
+    tank.has_picture = box.has_picture;
     std::ostringstream text;
     text << R"({"name": "box", "shape": {"box": [)" << box.width << ", " << box.height << R"(]}, "density": )"
          << kWater * box.ratio << R"(, "position": [)" << 0.5 * tank.width << ", "
          << tank.level + (0.5 - box.ratio) * box.height << R"(], "rotation_deg": [0, 7, 0]})";
     tank.bodies = text.str();
-    const RecordedRun run = run_recorded(tank.text(), options);
-    report = run.report;
+    run = run_recorded(tank.text(), options);
     const std::vector<double>& angle = run.column("box.ry");
     double sum = 0.0;
     const std::size_t first = angle.size() - angle.size() / 4;
@@ -161,12 +164,14 @@ void run_square_log(const ValidationOptions& options, ValidationResult& result)
         label << "measured, edge of " << resolution << " spacings";
         ValidationCurve curve{label.str(), ValidationCurve::Kind::measured, {}, {}};
         for (const Point& point : points) {
-            RunReport report;
+            RecordedRun run;
+            const bool has_picture = point.ratio == 0.5;
             const double angle =
-                folded(final_angle({kEdge, kEdge, point.ratio}, kEdge / resolution, 6.0, options, report));
+                folded(final_angle({kEdge, kEdge, point.ratio, has_picture}, kEdge / resolution, 6.0, options, run));
+            if (has_picture) result.pictures = {{at_ratio("the log at rest", point.ratio), run.png}};
             result.checks.push_back({at_ratio("angle of rest", point.ratio), "deg", resolution, angle,
                                      exact_log_angle(point.ratio), point.tolerance, std::nullopt,
-                                     report.simulated_seconds, report.wall_seconds});
+                                     run.report.simulated_seconds, run.report.wall_seconds});
             curve.x.push_back(point.ratio);
             curve.y.push_back(angle);
         }
@@ -186,15 +191,16 @@ void run_stability(const ValidationOptions& options, ValidationResult& result)
 {
     constexpr double kHeight = 0.12, kResolution = 12.0;
     for (const double shape : {1.05, 1.45}) {
-        RunReport report;
+        RecordedRun run;
         const double angle =
-            folded(final_angle({shape * kHeight, kHeight, 0.5}, kHeight / kResolution, 5.0, options, report));
+            folded(final_angle({shape * kHeight, kHeight, 0.5}, kHeight / kResolution, 5.0, options, run));
         const bool is_stable = shape > std::sqrt(1.5);
         std::ostringstream quantity;
         quantity << "angle of rest, B/H = " << shape << (is_stable ? " (stable)" : " (unstable)");
         // Unstable: it must end further from upright than where it was let go.
         result.checks.push_back({quantity.str(), "deg", kResolution, angle, is_stable ? 0.0 : 27.5,
-                                 is_stable ? 3.0 : 17.5, std::nullopt, report.simulated_seconds, report.wall_seconds});
+                                 is_stable ? 3.0 : 17.5, std::nullopt, run.report.simulated_seconds,
+                                 run.report.wall_seconds});
     }
 }
 

@@ -74,7 +74,8 @@ table { border-collapse: collapse; font-size: 13px; width: 100% }
 th, td { padding: 2px 8px; text-align: right; border-bottom: 1px solid #e4e4e4 }
 th:first-child, td:first-child { text-align: left }
 td.ok { color: #1a7a2e } td.outside { color: #b3261e; font-weight: bold }
-svg { max-width: 100%; height: auto; margin-top: 1em }
+svg, img { max-width: 100%; height: auto; margin-top: 1em }
+figure { margin: 0 } figcaption { font-size: 13px; color: #555 }
 </style></head><body>
 )";
 
@@ -101,6 +102,20 @@ int count_passed(const ValidationResult& result)
 {
     return static_cast<int>(
         std::count_if(result.checks.begin(), result.checks.end(), [](const auto& check) { return check.passed(); }));
+}
+
+/// **Source:** RFC 4648, section 4.
+std::string base64_of(const std::vector<std::uint8_t>& bytes)
+{
+    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t k = 0; k < bytes.size(); k += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
+        std::uint32_t group = 0;
+        for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (j < count ? bytes[k + j] : 0u);
+        for (std::size_t j = 0; j < 4; ++j) text += j <= count ? kDigits[group >> (18 - 6 * j) & 63u] : '=';
+    }
+    return text;
 }
 
 void write_summary(std::ostream& html, const std::vector<ValidationResult>& results)
@@ -133,6 +148,9 @@ std::string section_of(const ValidationResult& result)
     html << "<h2 id=\"" << result.name << "\">" << escaped(result.title) << "</h2>\n";
     write_checks(html, result);
     for (const std::string& note : result.notes) html << "<p>" << escaped(note) << "</p>\n";
+    for (const ValidationPicture& picture : result.pictures)
+        html << "<figure><img alt=\"" << escaped(picture.caption) << "\" src=\"data:image/png;base64,"
+             << base64_of(picture.png) << "\"><figcaption>" << escaped(picture.caption) << "</figcaption></figure>\n";
     for (const ValidationChart& chart : result.charts) {
         try {
             html << validation::svg_of(chart) << "\n";

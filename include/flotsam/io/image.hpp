@@ -20,6 +20,9 @@ struct Image {
     [[nodiscard]] const std::uint8_t* pixel(std::size_t index) const { return rgb.data() + 3 * index; }
 };
 
+/// The bytes of a PNG file. Throws OutputError; std::invalid_argument for an empty image.
+[[nodiscard]] std::vector<std::uint8_t> png_of(const Image& image);
+
 /// Throws OutputError; std::invalid_argument for an empty image.
 void write_png(const std::filesystem::path& file, const Image& image);
 

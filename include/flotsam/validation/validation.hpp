@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -44,12 +45,19 @@ struct ValidationChart {
     double band = 0.0; ///< half width of the band around the curves of the reference, in y; 0: none
 };
 
+/// What a case looked like.
+struct ValidationPicture {
+    std::string caption;
+    std::vector<std::uint8_t> png; ///< bytes of the file
+};
+
 struct ValidationResult {
     std::string name, group, title;
     double time_limit = 0.0;   ///< on two cores [s]
     double wall_seconds = 0.0; ///< that it took
     std::vector<ValidationCheck> checks;
     std::vector<ValidationChart> charts;
+    std::vector<ValidationPicture> pictures;
     std::vector<std::string> notes; ///< what the numbers do not say, a sentence each
 
     [[nodiscard]] bool passed() const;
@@ -77,7 +85,7 @@ struct ValidationCaseInfo {
 [[nodiscard]] std::optional<double> order_of_convergence(const ValidationResult& result, const std::string& quantity);
 
 /// What came out of the cases so far, in a directory that is made if need be: validation.csv, a row for each check, and
-/// report.html, one page with tables and charts that needs no other file. Each chart is drawn once.
+/// report.html, one page with tables, pictures and charts that needs no other file. Each chart is drawn once.
 class ValidationReport {
   public:
     ValidationReport(std::filesystem::path directory, const ValidationOptions& options)

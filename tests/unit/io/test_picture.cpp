@@ -237,6 +237,8 @@ TEST_CASE("a PNG decodes to the picture", "[io][png]")
     for (std::size_t k = 0; k < image.rgb.size(); ++k) image.rgb[k] = static_cast<std::uint8_t>(37 * k % 251);
     write_png(scratch / "a.png", image);
     CHECK(contents(scratch / "a.png").substr(0, 8) == "\x89PNG\r\n\x1a\n");
+    const std::vector<std::uint8_t> bytes = png_of(image);
+    CHECK(contents(scratch / "a.png") == std::string(bytes.begin(), bytes.end()));
 
     png_image decoded{};
     decoded.version = PNG_IMAGE_VERSION;
@@ -254,4 +256,5 @@ TEST_CASE("a PNG on a full disk says so", "[io][png]")
     CHECK_THROWS_WITH(write_png("/dev/full", Image(64, 64)), "cannot write /dev/full: No space left on device");
     CHECK_THROWS_AS(write_png("/nowhere/a.png", Image(1, 1)), OutputError);
     CHECK_THROWS_AS(write_png("a.png", Image()), std::invalid_argument);
+    CHECK_THROWS_AS(png_of(Image()), std::invalid_argument);
 }

@@ -36,6 +36,14 @@ bool contains(const std::string& text, const std::string& part)
     return text.find(part) != std::string::npos;
 }
 
+/// How often the text has the part.
+int count(const std::string& text, const std::string& part)
+{
+    int found = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+}
+
 } // namespace
 
 TEST_CASE("a check passes inside its band, and never without a number", "[validation]")
@@ -89,6 +97,7 @@ TEST_CASE("the report is a table and a page that needs no other file", "[validat
     result.title = "Bodies <afloat>";
     result.checks = {check_of(8, 1.5, 1.0, 0.1), check_of(16, 1.05, 1.0, 0.1)};
     result.checks[0].quantity = "draft, of \"it\"";
+    result.pictures = {{"A <ball>", {'M'}}, {"A cube", {'M', 'a'}}, {"Both", {0x89, 'P', 'N', 'G', 0xff, 0x00}}};
     result.charts = {{"Drafts", "size", "draft", {{"theory", ValidationCurve::Kind::reference, {0, 1}, {1, 1}}}, 0.1}};
     const auto directory =
         std::filesystem::temp_directory_path() / ("flotsam_validation_" + std::to_string(::getpid()));
@@ -101,6 +110,9 @@ TEST_CASE("the report is a table and a page that needs no other file", "[validat
     CHECK(contains(page, "Bodies &lt;afloat>"));
     CHECK(contains(page, "1 of 2"));
     CHECK(contains(page, "<svg"));
-    CHECK_FALSE(contains(page, "src="));
+    CHECK(contains(page, "<figcaption>A &lt;ball></figcaption>"));
+    for (const char* picture : {"base64,TQ==\"", "base64,TWE=\"", "base64,iVBOR/8A\""}) CHECK(contains(page, picture));
+    CHECK(count(page, "src=") == 3); // and all three are in the page
+    CHECK(count(page, "src=\"data:image/png;base64,") == 3);
     CHECK_FALSE(contains(page, "<?xml"));
 }
