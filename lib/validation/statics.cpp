@@ -261,6 +261,7 @@ constexpr std::array kCases = {
     Case{"square_log", "statics", "The angle at which a square log floats", 40.0, 200.0, run_square_log},
     Case{"stability", "statics", "Which boxes float upright", 30.0, 40.0, run_stability},
     Case{"righting_arm", "statics", "Righting arms of boxes held at a heel", 40.0, 200.0, run_righting_arm},
+    Case{"wigley_heel", "statics", "Righting arms of a Wigley hull held at a heel", 40.0, 110.0, run_wigley_heel},
 };
 
 } // namespace

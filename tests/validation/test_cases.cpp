@@ -81,6 +81,11 @@ TEST_CASE("righting arms of boxes", "[validation][cases]")
     check_case("righting_arm");
 }
 
+TEST_CASE("righting arms of a hull", "[validation][cases]")
+{
+    check_picture(check_case("wigley_heel"));
+}
+
 TEST_CASE("bodies let go under water carry their added mass", "[validation][cases]")
 {
     check_case("release_2d");
