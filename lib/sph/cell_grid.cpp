@@ -39,7 +39,8 @@ void CellLists::build(const CellGrid& grid, std::span<const Vec4> points, const 
 {
     const std::size_t count = points.size();
     cell.resize(count);
-    order.resize(count);
+    order.resize(count + kSlack);
+    for (auto* axis : {&x, &y, &z}) axis->resize(count + kSlack);
     if (start.capacity() <= grid.size()) start.reserve(2 * grid.size() + 1); // a splash widens the grid step by step
     start.assign(grid.size() + 1, 0);
     workers.for_each(count, [&](std::size_t i) { cell[i] = grid.index_of(grid.cell_of(points[i])); });
@@ -49,6 +50,12 @@ void CellLists::build(const CellGrid& grid, std::span<const Vec4> points, const 
     for (std::size_t i = 0; i < count; ++i) order[start[cell[i]]++] = static_cast<std::uint32_t>(i);
     std::copy_backward(start.begin(), start.end() - 1, start.end());
     start[0] = 0;
+    workers.for_each(count, [&](std::size_t k) {
+        const Vec4& p = points[order[k]];
+        x[k] = p[0];
+        y[k] = p[1];
+        z[k] = p[2];
+    });
 }
 
 } // namespace flotsam

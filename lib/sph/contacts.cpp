@@ -4,8 +4,9 @@
 
 namespace flotsam {
 
-void ContactBuilder::build(const Pairs& boundary_pairs, const BoundaryState& boundary, std::span<const Vec3d> centers,
-                           double rest_density, const Workers& workers, Contacts& contacts)
+void ContactBuilder::build(const Pairs& boundary_pairs, std::span<const Vec4> position, const BoundaryState& boundary,
+                           std::span<const Vec3d> centers, double rest_density, const Workers& workers,
+                           Contacts& contacts)
 {
     const std::size_t count = boundary_pairs.rows();
     const std::size_t chunks = Workers::chunk_count(count);
@@ -21,8 +22,8 @@ void ContactBuilder::build(const Pairs& boundary_pairs, const BoundaryState& bou
             for (std::uint32_t k = boundary_pairs.start[i]; k < boundary_pairs.start[i + 1]; ++k) {
                 const std::uint32_t b = boundary_pairs.index[k];
                 const std::int32_t owner = boundary.owner[b];
-                const Vec3 weight =
-                    static_cast<Scalar>(rest_density) * boundary.volume[b] * boundary_pairs.gradient[k].head<3>();
+                const Vec3 weight = (static_cast<Scalar>(rest_density) * boundary.volume[b] * boundary_pairs.slope[k]) *
+                                    (position[i] - boundary.position[b]).head<3>();
                 const Vec3 arm =
                     boundary.position[b].head<3>() - centers[static_cast<std::size_t>(owner)].cast<Scalar>();
                 auto row = std::find_if(rows.begin() + static_cast<std::ptrdiff_t>(first), rows.end(),

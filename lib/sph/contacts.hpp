@@ -31,9 +31,9 @@ struct Contacts {
 /// Builds Contacts from the fluid's pairs with boundary samples. Scratch is kept between calls.
 class ContactBuilder {
   public:
-    /// `centers`: of each owner, about which moments are taken [m].
-    void build(const Pairs& boundary_pairs, const BoundaryState& boundary, std::span<const Vec3d> centers,
-               double rest_density, const Workers& workers, Contacts& contacts);
+    /// `position`: of the fluid particles [m]; `centers`: of each owner, about which moments are taken [m].
+    void build(const Pairs& boundary_pairs, std::span<const Vec4> position, const BoundaryState& boundary,
+               std::span<const Vec3d> centers, double rest_density, const Workers& workers, Contacts& contacts);
 
   private:
     struct Row {

@@ -2,22 +2,13 @@
 
 namespace flotsam {
 
-void compute_density(const Pairs& fluid_pairs, const Pairs& boundary_pairs, std::span<const Scalar> boundary_volume,
-                     Scalar kernel_at_zero, double particle_mass, double rest_density, const Workers& workers,
-                     std::span<Scalar> density)
+void compute_density(const Pairs& fluid_pairs, const Pairs& boundary_pairs, Scalar kernel_at_zero, double particle_mass,
+                     double rest_density, const Workers& workers, std::span<Scalar> density)
 {
     const Scalar mass = static_cast<Scalar>(particle_mass);
     const Scalar rho0 = static_cast<Scalar>(rest_density);
     workers.for_each(density.size(), [&](std::size_t i) {
-        Scalar water = kernel_at_zero;
-        for (std::uint32_t k = fluid_pairs.start[i]; k < fluid_pairs.start[i + 1]; ++k) {
-            water += fluid_pairs.gradient[k][3];
-        }
-        Scalar solid = 0;
-        for (std::uint32_t k = boundary_pairs.start[i]; k < boundary_pairs.start[i + 1]; ++k) {
-            solid += boundary_volume[boundary_pairs.index[k]] * boundary_pairs.gradient[k][3];
-        }
-        density[i] = mass * water + rho0 * solid;
+        density[i] = mass * (kernel_at_zero + fluid_pairs.kernel_sum[i]) + rho0 * boundary_pairs.kernel_sum[i];
     });
 }
 

@@ -1,6 +1,8 @@
 // Bodies that move with the water: release under water, heave.
 #include "validation/case.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -78,15 +80,34 @@ void run_release_3d(const ValidationOptions& options, ValidationResult& result)
                            "that of water without bounds.");
 }
 
-/// Times and values of the extrema of y.
 struct Extremum {
     double time, value;
 };
-std::vector<Extremum> extrema(const std::vector<double>& t, const std::vector<double>& y)
+
+/// Extrema of y(t), t evenly spaced: where the slope of the parabola that fits the samples within `window` of a time
+/// best changes its sign. The crest of a heave is flat: single samples say little about when it was.
+std::vector<Extremum> extrema(const std::vector<double>& t, const std::vector<double>& y, double window)
 {
     std::vector<Extremum> found;
-    for (std::size_t k = 1; k + 1 < y.size(); ++k)
-        if ((y[k] - y[k - 1]) * (y[k + 1] - y[k]) < 0.0) found.push_back({t[k], y[k]});
+    double last_slope = 0.0;
+    for (std::size_t k = 0; k < t.size(); ++k) {
+        if (t[k] - window < t.front() || t[k] + window > t.back()) continue;
+        Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+        Eigen::Vector3d right = Eigen::Vector3d::Zero();
+        for (std::size_t m = 0; m < t.size(); ++m) {
+            const double dt = t[m] - t[k];
+            if (std::abs(dt) > window) continue;
+            const Eigen::Vector3d powers(1.0, dt, dt * dt);
+            normal += powers * powers.transpose();
+            right += y[m] * powers;
+        }
+        const Eigen::Vector3d fit = normal.ldlt().solve(right); // value, slope and half the curvature at t[k]
+        if (last_slope * fit[1] < 0.0) {
+            const double to_vertex = -0.5 * fit[1] / fit[2];
+            found.push_back({t[k] + to_vertex, fit[0] + 0.5 * fit[1] * to_vertex});
+        }
+        last_slope = fit[1];
+    }
     return found;
 }
 
@@ -119,7 +140,7 @@ void run_disc_heave(const ValidationOptions& options, ValidationResult& result)
         std::ostringstream label;
         label << "measured, R of " << resolution << " spacings";
         curve.label = label.str();
-        const std::vector<Extremum> turns = extrema(curve.x, curve.y);
+        const std::vector<Extremum> turns = extrema(curve.x, curve.y, 7.0 / 12.0);
         const auto check = [&](const char* quantity, double value, double reference, double tolerance) {
             result.checks.push_back({quantity, "-", resolution, value, reference, tolerance, std::nullopt,
                                      run.report.simulated_seconds, run.report.wall_seconds});
@@ -156,7 +177,7 @@ void run_box_heave(const ValidationOptions& options, ValidationResult& result)
              << tank.level + 0.4 * draft << "]}";
         tank.bodies = text.str();
         const RecordedRun run = run_recorded(tank.text(), options);
-        const std::vector<Extremum> turns = extrema(run.column("t"), run.column("box.z"));
+        const std::vector<Extremum> turns = extrema(run.column("t"), run.column("box.z"), without / 10.0);
         const double period = turns.size() < 2 ? NAN : 2.0 * (turns[1].time - turns[0].time);
         std::ostringstream quantity;
         quantity << "period / 2 pi sqrt(draft / g), draft of " << draft << " m";

@@ -49,15 +49,13 @@ std::vector<double> sample_volumes(std::span<const Vec3d> positions, std::span<c
     lists.build(grid, points, workers);
     NeighbourSearch search;
     Pairs pairs;
-    kernel.visit([&](const auto& spline) { search.find(spline, grid, lists, points, points, true, workers, pairs); });
+    kernel.visit([&](const auto& spline) { search.find(spline, grid, lists, points, true, {}, workers, pairs); });
     const BoundaryCalibration calibration = boundary_calibration(kind, dimensions);
     const double water = 0.5 * particle_spacing, full = calibration.inset * particle_spacing;
     const double at_full = plane_integral(kernel, water + full, dimensions);
     std::vector<double> volumes(points.size());
     for (std::size_t b = 0; b < points.size(); ++b) {
-        double sum = static_cast<double>(kernel.value(0));
-        for (std::uint32_t k = pairs.start[b]; k < pairs.start[b + 1]; ++k)
-            sum += static_cast<double>(pairs.gradient[k][3]);
+        const double sum = static_cast<double>(kernel.value(0)) + static_cast<double>(pairs.kernel_sum[b]);
         // Depths differ by rounding only where the solid is thick.
         const bool thin = depths[b] < 0.999 * full;
         const double factor = thin

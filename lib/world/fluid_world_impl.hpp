@@ -92,7 +92,7 @@ struct FluidWorld::Impl {
     // -- of the step under way, kept for their capacity -------------------------------------------------------------
     CellGrid grid;
     CellLists fluid_cells, boundary_cells;
-    NeighbourSearch search, boundary_search;
+    NeighbourSearch search;
     Pairs fluid_pairs, boundary_pairs;
     std::size_t paired_samples = 0; ///< boundary samples that there were when boundary_pairs was found
     ContactBuilder contact_builder;
@@ -111,8 +111,10 @@ struct FluidWorld::Impl {
     std::vector<Wrench> rubbed;  ///< viscous impulses of each owner [N s]
     std::vector<Wrench> total;   ///< of each owner over the last step [N s]
     std::vector<Wrench> offered; ///< total and pushed, while joints and contacts are asked about them [N s]
-    std::vector<Vec4> predicted, change, shift, new_position, new_velocity;
-    std::vector<Scalar> multiplier, shift_multiplier, source, diagonal, shift_diagonal;
+    std::vector<Vec4> predicted, change, shift, new_velocity;
+    std::vector<Vec4> new_position; ///< between steps: where the particles were when the pairs were found
+    std::vector<Vec4> packed;       ///< of the pressure system
+    std::vector<Scalar> multiplier, shift_multiplier, source, diagonal, fluid_diagonal;
     std::vector<Eigen::Matrix<double, 6, 6>> mobility;
     std::vector<Vec4> sort_vec4;
     std::vector<Scalar> sort_scalar;
@@ -204,10 +206,11 @@ struct FluidWorld::Impl {
     {
         return settings.pressure.coupling == PressureSettings::Coupling::strong && !bodies.empty();
     }
-    [[nodiscard]] SolveResult solve_shift();
+    [[nodiscard]] PressureSystem pressure_system();
+    [[nodiscard]] SolveResult solve_shift(const PressureSystem& system);
     [[nodiscard]] double mean_length(std::span<const Vec4> vectors);
     [[nodiscard]] double part_of_cold_residual(double scale);
-    [[nodiscard]] bool shift_if_possible(StepReport& report);
+    [[nodiscard]] bool shift_if_possible(const PressureSystem& system, StepReport& report);
     void advance(double dt, Bodies& port, StepReport& report);
     void guard_walls(double dt, Bodies& port, StepReport& report);
     [[nodiscard]] ComplementaritySolver& solver();
@@ -230,7 +233,8 @@ void FluidWorld::Impl::visit_pushes(std::size_t owner, Visit&& visit) const
         for (std::uint32_t p = boundary_pairs.start[i]; p < boundary_pairs.start[i + 1]; ++p) {
             const std::uint32_t b = boundary_pairs.index[p];
             if (boundary.owner[b] != static_cast<std::int32_t>(owner)) continue;
-            const Vec3d gradient = boundary_pairs.gradient[p].head<3>().cast<double>();
+            const Vec3d gradient = static_cast<double>(boundary_pairs.slope[p]) *
+                                   (new_position[i] - boundary.position[b]).head<3>().cast<double>();
             visit(i, b, Vec3d(push * static_cast<double>(boundary.volume[b]) * gradient));
         }
     }

@@ -213,8 +213,7 @@ void FluidWorld::Impl::relax(int max_rounds)
         find_neighbours();
         measure_density(ignored);
         if (ignored.compression_mean <= 0.5 * settings.pressure.tolerance && ignored.compression_max < 0.01) break;
-        shift_diagonal.resize(fluid.size());
-        static_cast<void>(solve_shift());
+        static_cast<void>(solve_shift(pressure_system()));
         new_position.resize(fluid.size());
         workers.for_each(fluid.size(), [&](std::size_t i) {
             new_position[i] = fluid.position[i];

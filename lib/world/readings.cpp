@@ -46,8 +46,8 @@ double FluidWorld::Impl::gauge_pressure(std::size_t i) const
     double sum = 0.0;
     for (std::uint32_t k = fluid_pairs.start[i]; k < fluid_pairs.start[i + 1]; ++k) {
         const std::uint32_t j = fluid_pairs.index[k];
-        const Vec3d gradient = fluid_pairs.gradient[k].head<3>().cast<double>();
-        const Vec3d x = (fluid.position[i] - fluid.position[j]).head<3>().cast<double>();
+        const Vec3d x = (new_position[i] - new_position[j]).head<3>().cast<double>();
+        const Vec3d gradient = static_cast<double>(fluid_pairs.slope[k]) * x;
         const double push = g > 0.0 ? -x.dot(settings.gravity) * gradient.dot(settings.gravity) / (g * g)
                                     : -x.dot(gradient) / settings.dimensions;
         sum += (share(i) + share(j)) * push;

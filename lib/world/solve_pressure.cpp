@@ -55,8 +55,17 @@ double FluidWorld::Impl::mean_length(std::span<const Vec4> vectors)
     }) / static_cast<double>(vectors.size());
 }
 
+/// The system of the pairs and contacts as they are, with fluid_diagonal.
+PressureSystem FluidWorld::Impl::pressure_system()
+{
+    const PressureSystem system(fluid_pairs, fluid.position, contacts, fluid.particle_mass, workers, packed);
+    fluid_diagonal.resize(fluid.size());
+    system.fluid_diagonal(fluid_diagonal);
+    return system;
+}
+
 /// Positions are shifted so that the densities fall to rest density; bodies stand still in it and no momentum moves.
-SolveResult FluidWorld::Impl::solve_shift()
+SolveResult FluidWorld::Impl::solve_shift(const PressureSystem& system)
 {
     constexpr int kMostShiftIterations = 200; // what takes more has nowhere to be shifted to
     const std::size_t n = fluid.size();
@@ -65,15 +74,13 @@ SolveResult FluidWorld::Impl::solve_shift()
     shift.assign(n, Vec4::Zero());
     shift_multiplier.assign(n, Scalar(0));
     workers.for_each(n, [&](std::size_t i) { source[i] = fluid.density[i] - rho0; });
-    const PressureSystem system(fluid_pairs, contacts, fluid.particle_mass, workers);
-    system.fluid_diagonal(shift_diagonal);
     pressure_operator.bind(system, nullptr, owners());
     SolveGoal goal;
     goal.scale = 1.0 / settings.rest_density;
     goal.tolerance = settings.pressure.tolerance;
     goal.max_iterations = std::min(kMostShiftIterations, settings.pressure.max_iterations);
     goal.min_iterations = 0;
-    SolveResult result = solver().solve(pressure_operator, source, shift_diagonal, goal, shift_multiplier);
+    SolveResult result = solver().solve(pressure_operator, source, fluid_diagonal, goal, shift_multiplier);
     system.velocity_change(shift_multiplier, shift);
     // The system is linear in the shift only for a fraction of a spacing.
     const Scalar longest = static_cast<Scalar>(0.1 * spacing());
@@ -91,12 +98,12 @@ SolveResult FluidWorld::Impl::solve_shift()
 /// The shift of the split source; false where the source is the published one, for this step at least. Water that
 /// solids enclose has nowhere to be shifted to, and only the published source moves the solids: a shift that fails is
 /// dropped for it, and where shifts fail step after step, so are those of some steps to come.
-bool FluidWorld::Impl::shift_if_possible(StepReport& report)
+bool FluidWorld::Impl::shift_if_possible(const PressureSystem& system, StepReport& report)
 {
     constexpr int kFailures = 3, kStepsWithout = 50, kStepsEnclosed = 1000;
     steps_enclosed = std::max(0, steps_enclosed - 1);
     if (settings.pressure.source == PressureSettings::Source::split && steps_without_shift == 0) {
-        const SolveResult result = solve_shift();
+        const SolveResult result = solve_shift(system);
         report.shift_iterations = result.iterations;
         report.products += result.products;
         report.converged = result.converged;
@@ -119,7 +126,7 @@ bool FluidWorld::Impl::shift_if_possible(StepReport& report)
 /// acceleration leaves no more than that.
 double FluidWorld::Impl::part_of_cold_residual(double scale)
 {
-    constexpr double kPart = 0.3, kLeast = 1e-7; // the least: rounding
+    constexpr double kPart = 0.2, kLeast = 1e-7; // the least: rounding
     if (source.empty()) return kLeast;
     const double sum = workers.ordered_sum<double>(
         source.size(), sums, [&](std::size_t i) { return std::max(0.0, static_cast<double>(source[i])); });
@@ -130,8 +137,8 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
 {
     constexpr int kMostRounds = 6; // of the solve, until joints and contacts hold and yield as it has them
     const std::size_t n = fluid.size();
-    shift_diagonal.resize(n);
-    const bool split = shift_if_possible(report);
+    const PressureSystem system = pressure_system();
+    const bool split = shift_if_possible(system, report);
     // The split leaves no density error in the pressure, so all of the last one is a good start; with the published
     // source a full start integrates the error and rings.
     const Scalar keep = split ? Scalar(1) : Scalar(0.5);
@@ -140,7 +147,6 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
         multiplier[i] = keep * static_cast<Scalar>(dt) * fluid.pressure[i] / (fluid.density[i] * fluid.density[i]);
     });
 
-    const PressureSystem system(fluid_pairs, contacts, fluid.particle_mass, workers);
     pushed.resize(owners());
     bool again = true;
     for (report.rounds = 0; again && report.rounds < kMostRounds; ++report.rounds) {
@@ -177,12 +183,11 @@ void FluidWorld::Impl::solve_velocities(const PressureSystem& system, double dt,
         const Scalar error = fluid.density[i] - static_cast<Scalar>(rho0);
         source[i] += inv_dt * (error > 0 ? share * std::min(most_error, error) : error);
     });
-    diagonal.resize(n);
-    system.fluid_diagonal(diagonal);
+    diagonal.assign(fluid_diagonal.begin(), fluid_diagonal.end());
     const bool preconditions = pressure.solver != PressureSettings::Solver::iisph;
     if (is_strong()) {
         build_mobility(port);
-        if (preconditions) preconditioner.build(system, mobility, diagonal);
+        if (preconditions) preconditioner.build(system, mobility, fluid_diagonal);
         system.add_response_diagonal(mobility, diagonal);
     }
     const auto answer_impulses = [&](std::span<const Wrench> impulses, std::span<Twist> answers) {

@@ -107,9 +107,8 @@ void FluidWorld::Impl::find_neighbours()
     boundary_cells.build(grid, boundary.position, workers);
     paired_samples = boundary.size();
     kernel.visit([&](const auto& spline) {
-        search.find(spline, grid, fluid_cells, fluid.position, fluid.position, true, workers, fluid_pairs);
-        boundary_search.find(spline, grid, boundary_cells, fluid.position, boundary.position, false, workers,
-                             boundary_pairs);
+        search.find(spline, grid, fluid_cells, fluid.position, true, {}, workers, fluid_pairs);
+        search.find(spline, grid, boundary_cells, fluid.position, false, boundary.volume, workers, boundary_pairs);
     });
 }
 
@@ -120,14 +119,14 @@ void FluidWorld::Impl::sort_particles()
     reorder(fluid.velocity, sort_vec4, order, workers);
     reorder(fluid.pressure, sort_scalar, order, workers);
     reorder(fluid.id, sort_id, order, workers);
-    for (std::size_t i = 0; i < fluid_cells.order.size(); ++i) fluid_cells.order[i] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < fluid.size(); ++i) fluid_cells.order[i] = static_cast<std::uint32_t>(i);
 }
 
 void FluidWorld::Impl::measure_density(StepReport& report)
 {
-    compute_density(fluid_pairs, boundary_pairs, boundary.volume, kernel.value(0), fluid.particle_mass,
-                    settings.rest_density, workers, fluid.density);
-    contact_builder.build(boundary_pairs, boundary, centers, settings.rest_density, workers, contacts);
+    compute_density(fluid_pairs, boundary_pairs, kernel.value(0), fluid.particle_mass, settings.rest_density, workers,
+                    fluid.density);
+    contact_builder.build(boundary_pairs, fluid.position, boundary, centers, settings.rest_density, workers, contacts);
     const double rho0 = settings.rest_density;
     const auto compression = [&](std::size_t i) {
         return std::max(0.0, static_cast<double>(fluid.density[i]) / rho0 - 1.0);

@@ -41,9 +41,12 @@ struct CellGrid {
 
 /// Points listed by cell: those of cell c are order[start[c]] .. order[start[c + 1]], in rising order.
 struct CellLists {
+    static constexpr std::size_t kSlack = 8; ///< entries behind the last one, so that whole registers can be loaded
+
     std::vector<std::uint32_t> start;
-    std::vector<std::uint32_t> order;
-    std::vector<std::uint32_t> cell; ///< of each point
+    std::vector<std::uint32_t> order; ///< with slack
+    std::vector<std::uint32_t> cell;  ///< of each point
+    std::vector<Scalar> x, y, z;      ///< of the points, in this order, with slack
 
     void build(const CellGrid& grid, std::span<const Vec4> points, const Workers& workers);
 };

@@ -28,6 +28,7 @@ class CubicSpline {
     }
 
     [[nodiscard]] Scalar support() const { return support_; }
+    [[nodiscard]] Scalar peak() const { return peak_; } ///< s
 
     /// W(r) [1/m^dimensions].
     [[nodiscard]] Scalar value(Scalar r) const
@@ -70,6 +71,8 @@ class QuinticSpline {
     }
 
     [[nodiscard]] Scalar support() const { return support_; }
+    [[nodiscard]] Scalar scale() const { return scale_; }   ///< 3 / h
+    [[nodiscard]] Scalar factor() const { return factor_; } ///< s
 
     /// W(r) [1/m^dimensions].
     [[nodiscard]] Scalar value(Scalar r) const

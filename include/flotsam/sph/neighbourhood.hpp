@@ -3,6 +3,7 @@
 #include "flotsam/core/parallel.hpp"
 #include "flotsam/core/types.hpp"
 #include "flotsam/sph/cell_grid.hpp"
+#include "flotsam/sph/kernel.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -13,41 +14,49 @@ namespace flotsam {
 
 /// Pairs (i, j) closer than the support radius in compressed rows: those of i are start[i] .. start[i + 1].
 struct Pairs {
+    static constexpr std::size_t kSlack = 8; ///< entries behind the last pair, so that whole registers can be loaded
+
     std::vector<std::uint32_t> start; ///< rows + 1
     std::vector<std::uint32_t> index; ///< j of each pair
-    std::vector<Vec4> gradient;       ///< x, y, z: gradient of W_ij with respect to x_i; w: W_ij
+    std::vector<Scalar> slope;        ///< (dW/dr) / r of each pair: the gradient of W_ij at x_i is slope (x_i - x_j)
+    std::vector<Scalar> kernel_sum;   ///< of each row: sum_j weight_j W_ij
 
     [[nodiscard]] std::size_t rows() const { return start.empty() ? 0 : start.size() - 1; }
-    [[nodiscard]] std::size_t size() const { return index.size(); }
+    [[nodiscard]] std::size_t size() const { return start.empty() ? 0 : start.back(); }
 };
 
-/// Neighbours of points `a` among points `b` (which `lists` has sorted into `grid`). A point is not its own neighbour:
-/// pass `same = true` if a and b are one set. The w of all points must be 0. Scratch is kept between calls.
+/// Neighbours of points among the points that `lists` has sorted into `grid`.
 class NeighbourSearch {
   public:
+    /// `same`: the points are those of the lists, and none is its own neighbour. `weights`: of the lists' points, by
+    /// their index, for kernel_sum; empty: 1.
     template <class Kernel>
-    void find(const Kernel& kernel, const CellGrid& grid, const CellLists& lists, std::span<const Vec4> a,
-              std::span<const Vec4> b, bool same, const Workers& workers, Pairs& pairs)
+    void find(const Kernel& kernel, const CellGrid& grid, const CellLists& lists, std::span<const Vec4> points,
+              bool same, std::span<const Scalar> weights, const Workers& workers, Pairs& pairs)
     {
-        find_indices(static_cast<Scalar>(kernel.support()), grid, lists, a, b, same, workers, pairs);
-        pairs.gradient.resize(pairs.index.size());
-        workers.for_each(a.size(), [&](std::size_t i) {
+        find_distances(kernel.support(), grid, lists, points, same, workers, pairs);
+        workers.for_each(points.size(), [&](std::size_t i) {
+            Scalar sum = 0;
             for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
-                const Vec4 offset = a[i] - b[pairs.index[k]];
-                const Scalar r = offset.norm();
-                Vec4 gradient = kernel.gradient_factor(r) * offset;
-                gradient[3] = kernel.value(r);
-                pairs.gradient[k] = gradient;
+                const Scalar r = std::sqrt(pairs.slope[k]);
+                pairs.slope[k] = kernel.gradient_factor(r);
+                sum += (weights.empty() ? Scalar(1) : weights[pairs.index[k]]) * kernel.value(r);
             }
+            pairs.kernel_sum[i] = sum;
         });
     }
+    void find(const QuinticSpline& kernel, const CellGrid& grid, const CellLists& lists, std::span<const Vec4> points,
+              bool same, std::span<const Scalar> weights, const Workers& workers, Pairs& pairs);
+    void find(const CubicSpline& kernel, const CellGrid& grid, const CellLists& lists, std::span<const Vec4> points,
+              bool same, std::span<const Scalar> weights, const Workers& workers, Pairs& pairs);
 
   private:
-    void find_indices(Scalar support, const CellGrid& grid, const CellLists& lists, std::span<const Vec4> a,
-                      std::span<const Vec4> b, bool same, const Workers& workers, Pairs& pairs);
-
-    std::vector<std::vector<std::uint32_t>> found_; ///< per chunk, rows one after another; only grows
-    std::vector<std::size_t> counts_;               ///< of each chunk's found
+    /// Squared distances stand in place of the slopes.
+    void find_distances(Scalar support, const CellGrid& grid, const CellLists& lists, std::span<const Vec4> points,
+                        bool same, const Workers& workers, Pairs& pairs);
+    template <class Spline>
+    void find_with(const Spline& kernel, const CellGrid& grid, const CellLists& lists, std::span<const Vec4> points,
+                   bool same, std::span<const Scalar> weights, const Workers& workers, Pairs& pairs);
 };
 
 } // namespace flotsam

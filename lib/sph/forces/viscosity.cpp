@@ -1,5 +1,7 @@
 #include "sph/forces/viscosity.hpp"
 
+#include "sph/pair_passes.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -7,6 +9,8 @@
 
 namespace flotsam {
 namespace {
+
+using Mat3 = Eigen::Matrix<Scalar, 3, 3>;
 
 Scalar softening_sq(const ViscositySettings& settings)
 {
@@ -20,80 +24,65 @@ void Viscosity::add(const ViscositySettings& settings, double dt, const FluidSta
                     std::span<const Vec3d> centers, const Workers& workers, std::span<Vec4> velocity,
                     std::span<Wrench> owner_impulses)
 {
-    find_gradients(settings, fluid, fluid_pairs, workers);
     add_between_particles(settings, dt, fluid, fluid_pairs, workers, velocity);
     if (settings.kinematic_viscosity > 0.0) {
         add_at_boundaries(settings, dt, fluid, boundary, boundary_pairs, centers, workers, velocity, owner_impulses);
     }
 }
 
-void Viscosity::find_gradients(const ViscositySettings& settings, const FluidState& fluid, const Pairs& pairs,
-                               const Workers& workers)
+void Viscosity::find_strains(const ViscositySettings& settings, const FluidState& fluid, const Pairs& pairs,
+                             const Workers& workers)
 {
-    gradient_.resize(settings.dissipation > 0.0 ? fluid.size() : 0);
     const Scalar volume = static_cast<Scalar>(fluid.particle_mass / settings.rest_density);
-    workers.for_each(gradient_.size(), [&](std::size_t i) {
-        Columns slope, shape;
-        slope.fill(Vec4::Zero());
-        shape.fill(Vec4::Zero());
-        const Vec4 x = fluid.position[i], v = fluid.velocity[i];
-        for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
-            const Vec4 dx = fluid.position[pairs.index[k]] - x, dv = fluid.velocity[pairs.index[k]] - v;
-            const Vec4 weight = pairs.gradient[k];
-            for (std::size_t c = 0; c < 3; ++c) {
-                slope[c] += weight[static_cast<int>(c)] * dv;
-                shape[c] += weight[static_cast<int>(c)] * dx;
-            }
-        }
-        Eigen::Matrix<Scalar, 3, 3> shape3, slope3;
-        for (int c = 0; c < 3; ++c) {
-            shape3.col(c) = volume * shape[static_cast<std::size_t>(c)].head<3>();
-            slope3.col(c) = Scalar(0.5) * volume * slope[static_cast<std::size_t>(c)].head<3>();
-        }
-        if (settings.dimensions == 2) shape3(1, 1) = 1;
-        // The shape is the identity in a full neighbourhood; where it is nearly singular (spray) there is no linear
-        // field.
-        const bool full = shape3.determinant() > Scalar(0.05);
-        if (full) slope3 = (slope3 * shape3.inverse()).eval();
-        for (int c = 0; c < 3; ++c) {
-            Vec4 column = Vec4::Zero();
-            if (full) column.head<3>() = slope3.col(c);
-            gradient_[i][static_cast<std::size_t>(c)] = column;
+    position_.resize(fluid.size());
+    velocity_.resize(fluid.size());
+    strain_.resize(fluid.size());
+    workers.for_chunks(fluid.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        std::array<pair_passes::LinearFit, Workers::kChunk> fits;
+        pair_passes::fit_linear(pairs, fluid.position, fluid.velocity, begin, end, fits.data());
+        for (std::size_t i = begin; i < end; ++i) {
+            const pair_passes::LinearFit& fit = fits[i - begin];
+            const auto& s = fit.shape;
+            Mat3 shape, slope;
+            shape << s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2];
+            for (int k = 0; k < 9; ++k)
+                slope(k / 3, k % 3) = Scalar(0.5) * volume * fit.velocity[static_cast<std::size_t>(k)];
+            shape *= volume;
+            if (settings.dimensions == 2) shape(1, 1) = 1;
+            // The shape is the identity in a full neighbourhood; where it is nearly singular (spray) there is no linear
+            // field.
+            if (shape.determinant() > Scalar(0.05))
+                slope = (slope * shape.inverse()).eval();
+            else
+                slope.setZero();
+            position_[i] = fluid.position[i];
+            velocity_[i] = fluid.velocity[i];
+            position_[i][3] = slope(0, 0);
+            velocity_[i][3] = slope(1, 1);
+            strain_[i] << slope(2, 2), Scalar(0.5) * (slope(0, 1) + slope(1, 0)),
+                Scalar(0.5) * (slope(0, 2) + slope(2, 0)), Scalar(0.5) * (slope(1, 2) + slope(2, 1));
         }
     });
 }
 
 void Viscosity::add_between_particles(const ViscositySettings& settings, double dt, const FluidState& fluid,
-                                      const Pairs& pairs, const Workers& workers, std::span<Vec4> velocity) const
+                                      const Pairs& pairs, const Workers& workers, std::span<Vec4> velocity)
 {
     const Scalar factor =
         static_cast<Scalar>(2.0 * (settings.dimensions + 2) * dt * fluid.particle_mass / settings.rest_density);
-    const Scalar nu = static_cast<Scalar>(settings.kinematic_viscosity);
-    const Scalar width = static_cast<Scalar>(settings.dissipation * settings.spacing);
-    const Scalar soft = softening_sq(settings);
+    pair_passes::ViscousPull pull;
+    pull.viscosity = static_cast<Scalar>(settings.kinematic_viscosity);
+    pull.width = static_cast<Scalar>(settings.dissipation * settings.spacing);
+    pull.softening_sq = softening_sq(settings);
     // An explicit step is stable below about d^2 / (10 dt); half of it is kept.
-    const Scalar most = static_cast<Scalar>(0.05 * settings.spacing * settings.spacing / dt);
-    const bool dissipates = !gradient_.empty();
-    workers.for_each(fluid.size(), [&](std::size_t i) {
-        Vec4 change = Vec4::Zero();
-        const Vec4 own_x = fluid.position[i], own_v = fluid.velocity[i];
-        for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
-            const std::uint32_t j = pairs.index[k];
-            const Vec4 x = own_x - fluid.position[j];
-            const Scalar s = x.dot(own_v - fluid.velocity[j]);
-            const Scalar distance_sq = x.squaredNorm() + soft;
-            Scalar pull = nu * s;
-            if (dissipates) {
-                const Columns &a = gradient_[i], &b = gradient_[j];
-                const Vec4 linear = x[0] * (a[0] + b[0]) + x[1] * (a[1] + b[1]) + x[2] * (a[2] + b[2]);
-                const Scalar rest = s - x.dot(linear);
-                const Scalar q = std::clamp(rest, std::min(s, Scalar(0)), std::max(s, Scalar(0)));
-                pull += std::min(most, width * std::abs(q) / std::sqrt(distance_sq)) * q;
-            }
-            change += (pull / distance_sq) * pairs.gradient[k];
-        }
-        change[3] = 0;
-        velocity[i] += factor * change;
+    pull.most = static_cast<Scalar>(0.05 * settings.spacing * settings.spacing / dt);
+    const bool dissipates = pull.width > Scalar(0);
+    if (dissipates) find_strains(settings, fluid, pairs, workers);
+    change_.resize(fluid.size());
+    workers.for_chunks(fluid.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        pair_passes::sum_viscous_pulls(pairs, dissipates ? position_ : fluid.position,
+                                       dissipates ? velocity_ : fluid.velocity, strain_, pull, begin, end, change_);
+        for (std::size_t i = begin; i < end; ++i) velocity[i] += factor * change_[i];
     });
 }
 
@@ -115,8 +104,7 @@ void Viscosity::add_at_boundaries(const ViscositySettings& settings, double dt, 
                 const std::uint32_t b = pairs.index[k];
                 const Vec4 x = fluid.position[i] - boundary.position[b];
                 const Scalar pull = x.dot(fluid.velocity[i] - boundary.velocity[b]) / (x.squaredNorm() + soft);
-                Vec4 part = factor * boundary.volume[b] * pull * pairs.gradient[k];
-                part[3] = 0;
+                const Vec4 part = (factor * boundary.volume[b] * pull * pairs.slope[k]) * x;
                 change += part;
                 const std::int32_t owner = boundary.owner[b];
                 auto reaction = std::find_if(reactions.begin(), reactions.end(),

@@ -4,7 +4,6 @@
 #include "flotsam/sph/fluid_state.hpp"
 #include "flotsam/sph/neighbourhood.hpp"
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -41,20 +40,21 @@ class Viscosity {
              const Workers& workers, std::span<Vec4> velocity, std::span<Wrench> owner_impulses);
 
   private:
-    using Columns = std::array<Vec4, 3>; ///< of a 3 x 3 matrix, w = 0
     struct Reaction {
         std::int32_t owner;
         Wrench impulse;
     };
-    void find_gradients(const ViscositySettings& settings, const FluidState& fluid, const Pairs& pairs,
-                        const Workers& workers);
+    void find_strains(const ViscositySettings& settings, const FluidState& fluid, const Pairs& pairs,
+                      const Workers& workers);
     void add_between_particles(const ViscositySettings& settings, double dt, const FluidState& fluid,
-                               const Pairs& pairs, const Workers& workers, std::span<Vec4> velocity) const;
+                               const Pairs& pairs, const Workers& workers, std::span<Vec4> velocity);
     void add_at_boundaries(const ViscositySettings& settings, double dt, const FluidState& fluid,
                            const BoundaryState& boundary, const Pairs& pairs, std::span<const Vec3d> centers,
                            const Workers& workers, std::span<Vec4> velocity, std::span<Wrench> owner_impulses);
 
-    std::vector<Columns> gradient_;                ///< half the velocity gradient of each particle [1/s]
+    /// Of each particle, with half of its strain rate in the fourth components and in strain_ (ViscousPull says how).
+    std::vector<Vec4> position_, velocity_, strain_;
+    std::vector<Vec4> change_;
     std::vector<std::vector<Reaction>> reactions_; ///< per chunk
 };
 

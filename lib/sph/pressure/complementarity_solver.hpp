@@ -99,6 +99,7 @@ class SpectralGradient final : public ComplementaritySolver {
     LargestEigenvalue largest_eigenvalue_;
     double largest_curvature_ = 0.0; ///< of D^-1 A, met lately; 0: none yet
     std::vector<Scalar> gradient_, step_, product_;
+    std::vector<double> pressed_;
     std::vector<Sums> sums_;
     Mprgp fallback_;
 };

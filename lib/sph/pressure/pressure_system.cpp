@@ -1,6 +1,7 @@
 #include "sph/pressure/pressure_system.hpp"
 
 #include "flotsam/core/contracts.hpp"
+#include "sph/pair_passes.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -16,29 +17,26 @@ Eigen::Matrix<double, 6, 6> transposed_root(const Eigen::Matrix<double, 6, 6>& m
 
 void PressureSystem::velocity_change(std::span<const Scalar> x, std::span<Vec4> dv) const
 {
+    std::vector<Vec4>& at = *scratch_;
+    at.resize(size());
     workers_->for_each(size(), [&](std::size_t i) {
-        const Scalar own = x[i];
-        Vec4 sum = Vec4::Zero();
-        for (std::uint32_t k = pairs_->start[i]; k < pairs_->start[i + 1]; ++k) {
-            sum += (own + x[pairs_->index[k]]) * pairs_->gradient[k];
-        }
-        sum = -mass_ * sum - own * contacts_->gradient[i];
-        sum[3] = 0;
-        dv[i] = sum;
+        at[i] = position_[i];
+        at[i][3] = x[i];
+    });
+    workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        pair_passes::sum_gradients(*pairs_, at, begin, end, dv);
+        for (std::size_t i = begin; i < end; ++i) dv[i] = -mass_ * dv[i] - x[i] * contacts_->gradient[i];
     });
 }
 
 void PressureSystem::density_rate(std::span<const Vec4> velocity, std::span<const Twist> twists,
                                   std::span<Scalar> rate) const
 {
-    workers_->for_each(size(), [&](std::size_t i) {
-        const Vec4 own = velocity[i];
-        Vec4 sum = Vec4::Zero(); // w stays zero: velocities carry w = 0
-        for (std::uint32_t k = pairs_->start[i]; k < pairs_->start[i + 1]; ++k) {
-            sum += (own - velocity[pairs_->index[k]]).cwiseProduct(pairs_->gradient[k]);
+    workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        pair_passes::sum_differences(*pairs_, position_, velocity, begin, end, rate);
+        for (std::size_t i = begin; i < end; ++i) {
+            rate[i] = mass_ * rate[i] + velocity[i].dot(contacts_->gradient[i]); // w is zero in either
         }
-        sum = mass_ * sum + own.cwiseProduct(contacts_->gradient[i]);
-        rate[i] = sum.sum();
     });
     for (std::size_t owner = 0; owner < twists.size(); ++owner) {
         Vec6 twist;
@@ -65,15 +63,14 @@ void PressureSystem::impulses(std::span<const Scalar> x, std::span<Wrench> out) 
 
 void PressureSystem::fluid_diagonal(std::span<Scalar> diagonal) const
 {
-    workers_->for_each(size(), [&](std::size_t i) {
-        Vec4 sum = Vec4::Zero();
-        Vec4 squares = Vec4::Zero();
-        for (std::uint32_t k = pairs_->start[i]; k < pairs_->start[i + 1]; ++k) {
-            sum += pairs_->gradient[k];
-            squares += pairs_->gradient[k].cwiseAbs2();
+    std::vector<Vec4>& sums = *scratch_;
+    sums.resize(size());
+    workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        pair_passes::sum_gradient_squares(*pairs_, position_, begin, end, sums);
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3 total = (mass_ * sums[i] + contacts_->gradient[i]).head<3>();
+            diagonal[i] = total.squaredNorm() + mass_ * mass_ * sums[i][3];
         }
-        const Vec4 total = mass_ * sum + contacts_->gradient[i];
-        diagonal[i] = total.head<3>().squaredNorm() + mass_ * mass_ * squares.head<3>().sum();
     });
 }
 

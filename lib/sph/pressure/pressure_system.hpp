@@ -29,8 +29,11 @@ using OwnerResponse = FunctionRef<void(std::span<const Wrench> impulses, std::sp
 /// **Differs:** the bodies' response is part of A, not a step between solves.
 class PressureSystem {
   public:
-    PressureSystem(const Pairs& pairs, const Contacts& contacts, double particle_mass, const Workers& workers)
-        : pairs_(&pairs), contacts_(&contacts), mass_(static_cast<Scalar>(particle_mass)), workers_(&workers)
+    /// `position`: of the particles, as the pairs were found [m]; `scratch` is written by velocity_change.
+    PressureSystem(const Pairs& pairs, std::span<const Vec4> position, const Contacts& contacts, double particle_mass,
+                   const Workers& workers, std::vector<Vec4>& scratch)
+        : pairs_(&pairs), position_(position), contacts_(&contacts), mass_(static_cast<Scalar>(particle_mass)),
+          workers_(&workers), scratch_(&scratch)
     {
     }
 
@@ -59,9 +62,11 @@ class PressureSystem {
 
   private:
     const Pairs* pairs_;
+    std::span<const Vec4> position_;
     const Contacts* contacts_;
     Scalar mass_;
     const Workers* workers_;
+    std::vector<Vec4>* scratch_; ///< positions, with the multipliers as fourth components
 };
 
 class ResponsePreconditioner;

@@ -23,8 +23,9 @@ SolveResult SpectralGradient::solve(PressureOperator& op, std::span<const Scalar
     const Workers& workers = op.system().workers();
     const std::size_t n = x.size();
     for (auto* v : {&gradient_, &step_, &product_}) v->resize(n);
-    workers.for_each(n, [&](std::size_t i) {
+    const double pressed = workers.ordered_sum<double>(n, pressed_, [&](std::size_t i) {
         if (!(diagonal[i] > Scalar(0))) x[i] = 0; // a particle alone carries no pressure
+        return x[i] > Scalar(0) ? 1.0 : 0.0;
     });
     const auto residual_of = [&](std::size_t i) {
         const double g = gradient_[i];
@@ -32,8 +33,12 @@ SolveResult SpectralGradient::solve(PressureOperator& op, std::span<const Scalar
         return g < 0.0 ? -g : std::min(g, static_cast<double>(x[i]) * static_cast<double>(diagonal[i]));
     };
     SolveResult result;
-    op.apply(x, product_);
-    ++result.products;
+    if (pressed > 0.0) {
+        op.apply(x, product_);
+        ++result.products;
+    } else {
+        std::fill(product_.begin(), product_.end(), Scalar(0));
+    }
     Sums sums = workers.ordered_sum<Sums>(n, sums_, [&](std::size_t i) {
         gradient_[i] = product_[i] - b[i];
         return Sums{0.0, 0.0, residual_of(i)};

@@ -22,6 +22,7 @@ struct Cloud {
     Pairs pairs, boundary_pairs;
     Contacts contacts;
     std::vector<Scalar> density;
+    std::vector<Vec4> scratch;
 
     KernelKind kernel_kind;
 
@@ -63,14 +64,15 @@ struct Cloud {
         boundary_cells.build(grid, boundary.position, workers);
         NeighbourSearch search;
         kernel.visit([&](const auto& spline) {
-            search.find(spline, grid, cells, points, points, true, workers, pairs);
-            search.find(spline, grid, boundary_cells, points, boundary.position, false, workers, boundary_pairs);
+            search.find(spline, grid, cells, points, true, {}, workers, pairs);
+            search.find(spline, grid, boundary_cells, points, false, boundary.volume, workers, boundary_pairs);
         });
-        ContactBuilder().build(boundary_pairs, boundary, centers, kRho0, workers, contacts);
+        ContactBuilder().build(boundary_pairs, points, boundary, centers, kRho0, workers, contacts);
         density.resize(points.size());
-        compute_density(pairs, boundary_pairs, boundary.volume, kernel.value(0), mass, kRho0, workers, density);
+        compute_density(pairs, boundary_pairs, kernel.value(0), mass, kRho0, workers, density);
     }
 
+    [[nodiscard]] PressureSystem system() { return {pairs, points, contacts, mass, workers, scratch}; }
     void respond(std::span<const Wrench> impulses, std::span<Twist> twists) const
     {
         const double inertia = 0.4 * body_mass * 0.01;
@@ -107,7 +109,7 @@ TEST_CASE("density rate is the derivative of the density", "[sph][pressure][deri
 {
     Cloud cloud(5.0);
     const std::size_t n = cloud.points.size();
-    const PressureSystem system(cloud.pairs, cloud.contacts, cloud.mass, cloud.workers);
+    const PressureSystem system = cloud.system();
     std::vector<Vec4> velocity(n, Vec4::Zero());
     const std::vector<Scalar> raw = random_values(3 * n, 6);
     for (std::size_t i = 0; i < n; ++i) velocity[i] = Vec4(raw[3 * i], raw[3 * i + 1], raw[3 * i + 2], 0);
@@ -144,7 +146,7 @@ TEST_CASE("the pressure operator is symmetric, positive and has the diagonal it 
     const double body_mass = GENERATE(0.01, 5.0, 1e9);
     Cloud cloud(body_mass);
     const std::size_t n = cloud.points.size();
-    const PressureSystem system(cloud.pairs, cloud.contacts, cloud.mass, cloud.workers);
+    const PressureSystem system = cloud.system();
     const auto answer = [&](std::span<const Wrench> w, std::span<Twist> t) { cloud.respond(w, t); };
     const OwnerResponse response = answer;
     PressureOperator op;
@@ -176,7 +178,7 @@ TEST_CASE("pressure impulses change no momentum of fluid and bodies together", "
 {
     Cloud cloud(3.0);
     const std::size_t n = cloud.points.size();
-    const PressureSystem system(cloud.pairs, cloud.contacts, cloud.mass, cloud.workers);
+    const PressureSystem system = cloud.system();
     std::vector<Scalar> x = random_values(n, 9);
     for (Scalar& v : x) v = std::abs(v);
     std::vector<Vec4> dv(n);
@@ -204,7 +206,7 @@ TEST_CASE("the response's preconditioner inverts the fluid's diagonal and the bo
 {
     Cloud cloud(GENERATE(0.01, 5.0));
     const std::size_t n = cloud.points.size();
-    const PressureSystem system(cloud.pairs, cloud.contacts, cloud.mass, cloud.workers);
+    const PressureSystem system = cloud.system();
     const auto answer = [&](std::span<const Wrench> w, std::span<Twist> t) { cloud.respond(w, t); };
     const OwnerResponse response = answer;
     PressureOperator with, without;
@@ -238,7 +240,7 @@ TEST_CASE("a body a millionth as heavy costs the Krylov method at most three tim
     const auto iterations = [](double body_mass) {
         Cloud cloud(body_mass);
         const std::size_t n = cloud.points.size();
-        const PressureSystem system(cloud.pairs, cloud.contacts, cloud.mass, cloud.workers);
+        const PressureSystem system = cloud.system();
         const auto answer = [&](std::span<const Wrench> w, std::span<Twist> t) { cloud.respond(w, t); };
         const OwnerResponse response = answer;
         std::vector<Scalar> diagonal(n), b(n), x(n, 0);
@@ -265,7 +267,7 @@ TEST_CASE("all solvers find the same pressures, also with a light body", "[sph][
     const double body_mass = GENERATE(0.05, 5.0);
     Cloud cloud(body_mass, GENERATE(KernelKind::quintic, KernelKind::cubic));
     const std::size_t n = cloud.points.size();
-    const PressureSystem system(cloud.pairs, cloud.contacts, cloud.mass, cloud.workers);
+    const PressureSystem system = cloud.system();
     const auto answer = [&](std::span<const Wrench> w, std::span<Twist> t) { cloud.respond(w, t); };
     const OwnerResponse response = answer;
     PressureOperator op;
@@ -313,7 +315,7 @@ TEST_CASE("the largest eigenvalue bounds the quotient of any vector but for a fe
 {
     Cloud cloud(0.5, GENERATE(KernelKind::quintic, KernelKind::cubic));
     const std::size_t n = cloud.points.size();
-    const PressureSystem system(cloud.pairs, cloud.contacts, cloud.mass, cloud.workers);
+    const PressureSystem system = cloud.system();
     PressureOperator op;
     op.bind(system, nullptr, 2);
     std::vector<Scalar> diagonal(n), x = random_values(n, 11), ax(n);

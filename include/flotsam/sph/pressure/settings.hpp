@@ -7,10 +7,10 @@ struct PressureSettings {
     enum class Solver { iisph, mprgp, spg } solver = Solver::spg;
     enum class Source { split, published } source = Source::split;
     enum class Coupling { strong, weak } coupling = Coupling::strong;
-    double tolerance = 1e-3;          ///< of the density: mean residual / rest density [-], > 0
-    double velocity_tolerance = 2e-5; ///< of the velocity solve of the split, per step [-], > 0; at most 0.3 of the
-                                      ///< residual that no pressure would leave
-    int max_iterations = 1000;        ///< of one solve; then it gives up: counted, not thrown
+    double tolerance = 1e-3;            ///< of the density: mean residual / rest density [-], > 0
+    double velocity_tolerance = 1.5e-5; ///< of the velocity solve of the split, per step [-], > 0; at most 0.2 of the
+                                        ///< residual that no pressure would leave
+    int max_iterations = 1000;          ///< of one solve; then it gives up: counted, not thrown
 };
 
 } // namespace flotsam

@@ -1,0 +1,82 @@
+#pragma once
+
+#include "flotsam/core/types.hpp"
+#include "flotsam/sph/cell_grid.hpp"
+#include "flotsam/sph/kernel.hpp"
+#include "flotsam/sph/neighbourhood.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+/// The loops over pairs, each written once and compiled for every instruction set of the processor family (Highway);
+/// the best one that the processor has is taken at run time. Each works on the rows [begin, end), on one thread; sums
+/// over the neighbours of a particle are taken in a fixed order that depends on the instruction set alone.
+///
+/// A neighbour's values are loaded as float4 and transposed in registers, which takes less time than gathers. The slope
+/// of a pair is stored, not its gradient: eight bytes a pair and iteration instead of twenty, and less time than to
+/// compute it anew (tests/bench/bench_pairs.cpp).
+namespace flotsam::pair_passes {
+
+/// Candidates and the point set that looks for neighbours among them.
+struct Search {
+    const CellGrid* grid = nullptr;
+    const CellLists* lists = nullptr;
+    std::span<const Vec4> points;
+    bool same = false; ///< the points are the candidates, in the order of the lists' indices
+    Scalar support = 0;
+};
+
+/// counts[i - begin]: neighbours of point i.
+void count_neighbours(const Search& search, std::size_t begin, std::size_t end, std::uint32_t* counts);
+
+/// Writes the neighbours of the rows, pairs.start being known, and their squared distances in place of the slopes.
+void write_neighbours(const Search& search, std::size_t begin, std::size_t end, Pairs& pairs);
+
+/// Squared distances in pairs.slope become slopes, and pairs.kernel_sum is written: sum_j weight_j W_ij; no weights: 1.
+void evaluate_kernel(const QuinticSpline& kernel, std::span<const Scalar> weights, std::size_t begin, std::size_t end,
+                     Pairs& pairs);
+void evaluate_kernel(const CubicSpline& kernel, std::span<const Scalar> weights, std::size_t begin, std::size_t end,
+                     Pairs& pairs);
+
+/// out_i = sum_j (w_i + w_j) grad W_ij, out.w = 0; `at`: x, y, z and w.
+void sum_gradients(const Pairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
+                   std::span<Vec4> out);
+
+/// out_i = sum_j (v_i - v_j) . grad W_ij
+void sum_differences(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+                     std::size_t begin, std::size_t end, std::span<Scalar> out);
+
+/// out_i = (sum_j grad W_ij, sum_j |grad W_ij|^2)
+void sum_gradient_squares(const Pairs& pairs, std::span<const Vec4> position, std::size_t begin, std::size_t end,
+                          std::span<Vec4> out);
+
+/// sum_j (v_j - v_i) grad W_ij^T and sum_j (x_j - x_i) grad W_ij^T: each row of three components of the gradient.
+struct LinearFit {
+    std::array<Scalar, 9> velocity; ///< row by row
+    std::array<Scalar, 6> shape;    ///< symmetric: xx, yy, zz, xy, xz, yz
+};
+void fit_linear(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity, std::size_t begin,
+                std::size_t end, LinearFit* fits);
+
+/// What a pair's viscous pull is made of; forces/viscosity.hpp has the formula.
+struct ViscousPull {
+    Scalar viscosity = 0;    ///< nu [m^2/s]
+    Scalar width = 0;        ///< dissipation times spacing [m]; 0: no dissipation
+    Scalar most = 0;         ///< largest nu_ij [m^2/s]
+    Scalar softening_sq = 0; ///< [m^2]
+};
+/// out_i = sum_j pull_ij / (|x_ij|^2 + softening^2) grad W_ij. Half the strain rate of a particle stands in the fourth
+/// components: position.w xx, velocity.w yy, and strain zz, xy, xz, yz.
+void sum_viscous_pulls(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+                       std::span<const Vec4> strain, const ViscousPull& pull, std::size_t begin, std::size_t end,
+                       std::span<Vec4> out);
+
+/// Instruction sets that this processor has of those compiled, best first.
+[[nodiscard]] std::vector<std::string> instruction_sets();
+/// Takes `name` of instruction_sets() for all passes of the process from now on; "": the best.
+void use_instruction_set(const std::string& name);
+
+} // namespace flotsam::pair_passes

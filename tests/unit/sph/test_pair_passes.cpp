@@ -1,0 +1,152 @@
+#include "sph/pair_passes.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <random>
+
+using namespace flotsam;
+
+namespace {
+
+using Mat3 = Mat3d;
+
+/// Restores the best instruction set however the test ends.
+struct InstructionSet {
+    explicit InstructionSet(const std::string& name) { pair_passes::use_instruction_set(name); }
+    ~InstructionSet() { pair_passes::use_instruction_set(""); }
+    InstructionSet(const InstructionSet&) = delete;
+    InstructionSet& operator=(const InstructionSet&) = delete;
+};
+
+struct Points {
+    static constexpr double kSpacing = 0.1;
+    std::vector<Vec4> position, velocity, strain;
+    std::vector<Scalar> weights;
+
+    explicit Points(std::size_t count)
+    {
+        std::mt19937 random(static_cast<unsigned>(count));
+        std::uniform_real_distribution<Scalar> value(-1, 1);
+        const Scalar size = static_cast<Scalar>(kSpacing * std::cbrt(static_cast<double>(count + 1)) / 2.0);
+        for (std::size_t i = 0; i < count; ++i) {
+            position.emplace_back(size * value(random), size * value(random), size * value(random), 0);
+            velocity.emplace_back(value(random), value(random), value(random), 0);
+            strain.emplace_back(value(random), value(random), value(random), value(random));
+            weights.push_back(Scalar(2) + value(random));
+        }
+    }
+};
+
+Vec3d wide(const Vec4& p)
+{
+    return p.head<3>().cast<double>();
+}
+
+void check_vec(const Vec3d& found, const Vec3d& expected, double size)
+{
+    CHECK((found - expected).norm() <= 2e-6 * size); // single precision, a few dozen terms
+}
+
+} // namespace
+
+TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loops in double precision", "[sph][oracle]",
+                   QuinticSpline, CubicSpline)
+{
+    // Row lengths of 0 to about 90, so that every rest of a register occurs.
+    const std::size_t count = GENERATE(0u, 1u, 2u, 40u, 257u, 1200u);
+    const std::vector<std::string> sets = pair_passes::instruction_sets();
+    REQUIRE_FALSE(sets.empty());
+    CAPTURE(count);
+    Points points(count);
+    const TestType kernel(2.5 * Points::kSpacing, 3);
+    const Workers workers(2);
+    const CellGrid grid = CellGrid::around(points.position, {}, static_cast<double>(kernel.support()), 4000);
+    CellLists lists;
+    lists.build(grid, points.position, workers);
+    for (const std::string& name : sets) {
+        CAPTURE(name);
+        const InstructionSet taken(name);
+        Pairs pairs;
+        NeighbourSearch().find(kernel, grid, lists, points.position, true, points.weights, workers, pairs);
+        REQUIRE(pairs.rows() == count);
+        const double volume = std::pow(Points::kSpacing, 3);
+        pair_passes::ViscousPull pull;
+        pull.viscosity = Scalar(0.01);
+        pull.width = Scalar(0.02);
+        pull.most = Scalar(0.03);
+        pull.softening_sq = Scalar(1e-4);
+        std::vector<Vec4> at = points.position, fast = points.velocity;
+        for (std::size_t i = 0; i < count; ++i) {
+            at[i][3] = points.weights[i];
+            fast[i][3] = points.strain[i][3];
+        }
+        std::vector<Vec4> gradients(count), squares(count), pulls(count);
+        std::vector<Scalar> differences(count);
+        std::vector<pair_passes::LinearFit> fits(count);
+        pair_passes::sum_gradients(pairs, at, 0, count, gradients);
+        pair_passes::sum_differences(pairs, points.position, points.velocity, 0, count, differences);
+        pair_passes::sum_gradient_squares(pairs, points.position, 0, count, squares);
+        pair_passes::fit_linear(pairs, points.position, points.velocity, 0, count, fits.data());
+        pair_passes::sum_viscous_pulls(pairs, at, fast, points.strain, pull, 0, count, pulls);
+        for (std::size_t i = 0; i < count; ++i) {
+            std::vector<std::uint32_t> expected,
+                found(pairs.index.begin() + pairs.start[i], pairs.index.begin() + pairs.start[i + 1]);
+            double kernel_sum = 0.0, difference = 0.0, square = 0.0, size = 0.0, pull_size = 0.0;
+            Vec3d gradient = Vec3d::Zero(), plain = Vec3d::Zero(), pulled = Vec3d::Zero();
+            Mat3 velocity = Mat3::Zero(), shape = Mat3::Zero();
+            const auto strain_of = [&](std::size_t k) {
+                const Vec4& s = points.strain[k];
+                Mat3 m;
+                m << double(at[k][3]), double(s[1]), double(s[2]), double(s[1]), double(fast[k][3]), double(s[3]),
+                    double(s[2]), double(s[3]), double(s[0]);
+                return m;
+            };
+            for (std::uint32_t j = 0; j < count; ++j) {
+                const Vec4 offset = points.position[i] - points.position[j];
+                if (j == i || !(offset.squaredNorm() < kernel.support() * kernel.support())) continue;
+                expected.push_back(j);
+                const Vec3d x = wide(offset), v = wide(points.velocity[i]) - wide(points.velocity[j]);
+                const Scalar r = offset.norm();
+                const Vec3d g = static_cast<double>(kernel.gradient_factor(r)) * x;
+                kernel_sum += static_cast<double>(points.weights[j]) * static_cast<double>(kernel.value(r));
+                gradient += (static_cast<double>(at[i][3]) + static_cast<double>(at[j][3])) * g;
+                plain += g;
+                difference += v.dot(g);
+                square += g.squaredNorm();
+                size += g.norm();
+                velocity -= v * g.transpose();
+                shape -= x * g.transpose();
+                const double s = x.dot(v), distance_sq = x.squaredNorm() + 1e-4;
+                const double q =
+                    std::clamp(s - x.dot((strain_of(i) + strain_of(j)) * x), std::min(s, 0.0), std::max(s, 0.0));
+                const double strength = 0.01 * s + std::min(0.03, 0.02 * std::abs(q) / std::sqrt(distance_sq)) * q;
+                pulled += strength / distance_sq * g;
+                pull_size += std::abs(s) / distance_sq * g.norm();
+            }
+            std::sort(found.begin(), found.end());
+            REQUIRE(found == expected);
+            CHECK(static_cast<double>(pairs.kernel_sum[i]) * volume ==
+                  Approx(kernel_sum * volume).epsilon(2e-6).margin(1e-9));
+            check_vec(wide(gradients[i]), gradient, 6.0 * size);
+            CHECK(gradients[i][3] == 0);
+            CHECK(std::abs(static_cast<double>(differences[i]) - difference) <= 1e-5 * size);
+            check_vec(wide(squares[i]), plain, size);
+            CHECK(static_cast<double>(squares[i][3]) == Approx(square).epsilon(1e-5));
+            check_vec(wide(pulls[i]), pulled, pull_size);
+            for (int k = 0; k < 9; ++k) {
+                CHECK(std::abs(static_cast<double>(fits[i].velocity[static_cast<std::size_t>(k)]) -
+                               velocity(k / 3, k % 3)) <= 1e-5 * size);
+            }
+            const std::array<std::pair<int, int>, 6> places = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+            for (std::size_t k = 0; k < 6; ++k) {
+                CHECK(std::abs(static_cast<double>(fits[i].shape[k]) - shape(places[k].first, places[k].second)) <=
+                      1e-5 * size * Points::kSpacing);
+            }
+        }
+    }
+}
+
+TEST_CASE("an instruction set that the processor does not have is refused", "[sph]")
+{
+    CHECK_THROWS(pair_passes::use_instruction_set("abacus"));
+}
