@@ -15,6 +15,10 @@
 #include <algorithm>
 #include <cstring>
 
+// For lambdas that get registers: called by themselves they would get them through memory.
+#undef FLOTSAM_INLINE
+#define FLOTSAM_INLINE __attribute__((always_inline))
+
 HWY_BEFORE_NAMESPACE();
 namespace flotsam::pair_passes::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -60,7 +64,7 @@ HWY_INLINE V4 load_transposed(const Vec4* points, const std::uint32_t* index)
 #else
     const Floats d;
     const hn::FixedTag<float, 4> four;
-    const auto load = [&](int lane) {
+    const auto load = [&](int lane) FLOTSAM_INLINE {
         const auto low = hn::Load(four, at(points, index[lane]));
 #if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON
         return low;
@@ -125,6 +129,17 @@ HWY_INLINE void store_vec3(const V3& v, Vec4* out)
     c[3] = 0;
 }
 
+/// For each mask, the lanes that it has, rising, and then any.
+constexpr auto kCompressed = [] {
+    std::array<std::array<std::int32_t, kLanes>, std::size_t{1} << kLanes> table{};
+    for (std::size_t mask = 0; mask < table.size(); ++mask) {
+        std::size_t count = 0;
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            if ((mask >> lane & 1) != 0) table[mask][count++] = static_cast<std::int32_t>(lane);
+    }
+    return table;
+}();
+
 // -- search -----------------------------------------------------------------------------------------------------------
 
 /// Ranges of the lists that hold the points of the 3 x 3 x 3 cells around a cell; the cells of a row along x are one.
@@ -187,12 +202,26 @@ HWY_INLINE void for_candidates(const Search& search, std::size_t i, Ranges& rang
     }
 }
 
+/// The lanes of v that the mask has, first. Highway's own copies its table to the stack before each use, with GCC 12.
+template <class D, class Lanes, class Mask>
+HWY_INLINE Lanes compress([[maybe_unused]] D d, Lanes v, Mask mask)
+{
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, mask, bits);
+    return hn::TableLookupLanes(v, hn::SetTableIndices(d, kCompressed[bits[0]].data()));
+#else
+    return hn::Compress(v, mask);
+#endif
+}
+
 void count_neighbours(const Search& search, std::size_t begin, std::size_t end, std::uint32_t* counts)
 {
     Ranges ranges;
     for (std::size_t i = begin; i < end; ++i) {
         std::size_t count = 0;
-        for_candidates(search, i, ranges, [&](U, auto near, V) { count += hn::CountTrue(Floats(), near); });
+        for_candidates(search, i, ranges,
+                       [&](U, auto near, V) FLOTSAM_INLINE { count += hn::CountTrue(Floats(), near); });
         counts[i - begin] = static_cast<std::uint32_t>(count);
     }
 }
@@ -205,10 +234,10 @@ void write_neighbours(const Search& search, std::size_t begin, std::size_t end, 
     const std::size_t chunk_end = pairs.start[end];
     for (std::size_t i = begin; i < end; ++i) {
         std::size_t k = pairs.start[i];
-        for_candidates(search, i, ranges, [&](U index, auto near, V distance_sq) {
+        for_candidates(search, i, ranges, [&](U index, auto near, V distance_sq) FLOTSAM_INLINE {
             const std::size_t count = hn::CountTrue(d, near);
-            const U kept = hn::Compress(index, hn::RebindMask(du, near));
-            const V kept_sq = hn::Compress(distance_sq, near);
+            const U kept = compress(du, index, hn::RebindMask(du, near));
+            const V kept_sq = compress(d, distance_sq, near);
             // Whole registers while what is too much falls into this chunk's rows: those are written later.
             if (k + kLanes <= chunk_end) {
                 hn::StoreU(kept, du, pairs.index.data() + k);
@@ -325,7 +354,7 @@ void sum_gradients(const Pairs& pairs, const Vec4* points, std::size_t begin, st
     for (std::size_t i = begin; i < end; ++i) {
         const V4 own = broadcast(points[i]);
         V3 sum{zero, zero, zero};
-        for_row(pairs, i, [&](std::uint32_t k, V slope) {
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
             const V4 other = load_transposed(points, pairs.index.data() + k);
             const V3 x = difference(own, other);
             const V factor = hn::Mul(slope, hn::Add(own.w, other.w));
@@ -341,7 +370,7 @@ void sum_differences(const Pairs& pairs, const Vec4* position, const Vec4* veloc
     for (std::size_t i = begin; i < end; ++i) {
         const V4 own = broadcast(position[i]), own_v = broadcast(velocity[i]);
         V sum = hn::Zero(Floats());
-        for_row(pairs, i, [&](std::uint32_t k, V slope) {
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
             const V3 x = difference(own, load_transposed(position, pairs.index.data() + k));
             const V3 v = difference(own_v, load_transposed(velocity, pairs.index.data() + k));
             sum = hn::MulAdd(slope, dot(x, v), sum);
@@ -357,7 +386,7 @@ void sum_gradient_squares(const Pairs& pairs, const Vec4* position, std::size_t 
         const V4 own = broadcast(position[i]);
         V3 sum{zero, zero, zero};
         V squares = zero;
-        for_row(pairs, i, [&](std::uint32_t k, V slope) {
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
             const V3 x = difference(own, load_transposed(position, pairs.index.data() + k));
             sum = {hn::MulAdd(slope, x.x, sum.x), hn::MulAdd(slope, x.y, sum.y), hn::MulAdd(slope, x.z, sum.z)};
             squares = hn::MulAdd(hn::Mul(slope, slope), dot(x, x), squares);
@@ -374,7 +403,7 @@ void fit_linear(const Pairs& pairs, const Vec4* position, const Vec4* velocity, 
     for (std::size_t i = begin; i < end; ++i) {
         const V4 own = broadcast(position[i]), own_v = broadcast(velocity[i]);
         V3 by_x{zero, zero, zero}, by_y = by_x, by_z = by_x, straight = by_x, crossed = by_x;
-        for_row(pairs, i, [&](std::uint32_t k, V slope) {
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
             const V3 x = difference(load_transposed(position, pairs.index.data() + k), own);
             const V3 v = difference(load_transposed(velocity, pairs.index.data() + k), own_v);
             // grad W_ij = slope (x_i - x_j) = -slope x
@@ -405,7 +434,7 @@ void sum_viscous_pulls(const Pairs& pairs, const Vec4* position, const Vec4* vel
         const V4 own = broadcast(position[i]), own_v = broadcast(velocity[i]);
         const V4 own_s = dissipates ? broadcast(strain[i]) : V4{zero, zero, zero, zero};
         V3 sum{zero, zero, zero};
-        for_row(pairs, i, [&](std::uint32_t k, V slope) {
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
             const std::uint32_t* index = pairs.index.data() + k;
             const V4 other = load_transposed(position, index), other_v = load_transposed(velocity, index);
             const V3 x = difference(own, other);
