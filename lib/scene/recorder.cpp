@@ -23,6 +23,13 @@ std::string numbered(const char* stem, std::size_t frame, const char* ending)
     return std::string(stem) + number + ending;
 }
 
+std::vector<Pose> poses_of(const SceneWorld& world)
+{
+    std::vector<Pose> poses;
+    for (std::size_t k = 0; k < world.body_count(); ++k) poses.push_back(world.body(k).pose);
+    return poses;
+}
+
 /// In 2-D bodies and walls are a metre long in y, which would hide the plane: made as thin as a particle.
 TriangleMesh for_picture(TriangleMesh mesh, const SceneFile& scene)
 {
@@ -111,8 +118,9 @@ void History::write_row(const SceneFile& scene, const PreparedScene& prepared, c
 
 // -- ParaView -----------------------------------------------------------------------------------------------------
 
-VtkFrames::VtkFrames(const std::filesystem::path& directory, const SceneWorld& world)
-    : directory_(directory), particles_(directory / "particles.pvd"), bodies_(directory / "bodies.pvd")
+VtkFrames::VtkFrames(const std::filesystem::path& directory, const PreparedScene& prepared, const SceneWorld& world)
+    : directory_(directory), prepared_(prepared), particles_(directory / "particles.pvd"),
+      bodies_(directory / "bodies.pvd")
 {
     std::filesystem::create_directories(directory_ / "vtk");
     std::vector<PlacedMesh> walls;
@@ -120,16 +128,21 @@ VtkFrames::VtkFrames(const std::filesystem::path& directory, const SceneWorld& w
     if (!walls.empty()) write_bodies_vtp(directory_ / "vtk" / "walls.vtp", walls);
 }
 
-void VtkFrames::write(const PreparedScene& prepared, const SceneWorld& world)
+void VtkFrames::add(const SceneWorld& world)
 {
-    const double time = world.fluid().time();
+    writer_.add([this, time = world.fluid().time(), fluid = world.fluid().fluid(), poses = poses_of(world)] {
+        write(time, fluid, poses);
+    });
+}
+
+void VtkFrames::write(double time, const FluidState& fluid, const std::vector<Pose>& poses)
+{
     const std::filesystem::path particles = "vtk/" + numbered("particles_", particles_.size(), ".vtp");
-    write_particles_vtp(directory_ / particles, world.fluid().fluid());
+    write_particles_vtp(directory_ / particles, fluid);
     particles_.add(time, particles);
-    if (world.body_count() == 0) return;
+    if (poses.empty()) return;
     std::vector<PlacedMesh> placed;
-    for (std::size_t k = 0; k < world.body_count(); ++k)
-        placed.push_back({&prepared.bodies[k].mesh, world.body(k).pose});
+    for (std::size_t k = 0; k < poses.size(); ++k) placed.push_back({&prepared_.bodies[k].mesh, poses[k]});
     const std::filesystem::path bodies = "vtk/" + numbered("bodies_", bodies_.size(), ".vtp");
     write_bodies_vtp(directory_ / bodies, placed);
     bodies_.add(time, bodies);
@@ -139,7 +152,8 @@ void VtkFrames::write(const PreparedScene& prepared, const SceneWorld& world)
 
 Pictures::Pictures(const std::filesystem::path& directory, const SceneFile& scene, const PreparedScene& prepared,
                    const SceneWorld& world, int threads)
-    : directory_(directory / "pictures"), workers_(threads)
+    : directory_(directory / "pictures"), width_(scene.output.pictures->width), height_(scene.output.pictures->height),
+      workers_(threads)
 {
     std::filesystem::create_directories(directory_);
     for (int k = 0; k < world.fluid().wall_count(); ++k)
@@ -158,15 +172,23 @@ Pictures::Pictures(const std::filesystem::path& directory, const SceneFile& scen
                                               : std::max(1, static_cast<int>(std::ceil(frames / 9.0)));
 }
 
-void Pictures::write(int frame, bool last, const SceneFile& scene, const SceneWorld& world)
+void Pictures::add(int frame, bool last, const SceneWorld& world)
 {
     if (frame % every_ != 0 && !last) return;
-    picture_.particles = world.fluid().fluid().position;
-    picture_.velocities = world.fluid().fluid().velocity;
-    for (std::size_t k = 0; k < picture_.bodies.size(); ++k) picture_.bodies[k].placed.pose = world.body(k).pose;
-    const ScenePictures& size = *scene.output.pictures;
+    const FluidState& fluid = world.fluid().fluid();
+    writer_.add([this, frame, positions = fluid.position, velocities = fluid.velocity, poses = poses_of(world)] {
+        write(frame, positions, velocities, poses);
+    });
+}
+
+void Pictures::write(int frame, const std::vector<Vec4>& positions, const std::vector<Vec4>& velocities,
+                     const std::vector<Pose>& poses)
+{
+    picture_.particles = positions;
+    picture_.velocities = velocities;
+    for (std::size_t k = 0; k < poses.size(); ++k) picture_.bodies[k].placed.pose = poses[k];
     write_png(directory_ / numbered("frame_", static_cast<std::size_t>(frame), ".png"),
-              renderer_.render(picture_, size.width, size.height, workers_));
+              renderer_.render(picture_, width_, height_, workers_));
 }
 
 } // namespace flotsam::scene

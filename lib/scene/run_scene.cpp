@@ -52,27 +52,48 @@ void refuse_broken_state(const StepReport& step, const SceneFile& scene, const S
     }
 }
 
-/// Everything that a run writes.
+/// Everything that a run writes: rows of the history at once, frames and pictures in the background.
 class Recorder {
   public:
     Recorder(const std::filesystem::path& directory, const SceneFile& scene, const PreparedScene& prepared,
              const SceneWorld& world, int threads)
         : history_(directory / "history.csv", scene)
     {
-        if (scene.output.vtk) vtk_.emplace(directory, world);
+        if (scene.output.vtk) vtk_.emplace(directory, prepared, world);
         if (scene.output.pictures) pictures_.emplace(directory, scene, prepared, world, threads);
     }
-    void add_step(const SceneWorld& world, double dt) { history_.add_step(world, dt); }
-    void write_frame(int frame, bool last, const SceneFile& scene, const PreparedScene& prepared,
-                     const SceneWorld& world)
+    /// Throws what went wrong with an earlier frame, so that a run whose frames are far apart ends soon.
+    void add_step(const SceneWorld& world, double dt)
+    {
+        check_frames();
+        history_.add_step(world, dt);
+    }
+    void add_frame(int frame, bool last, const SceneFile& scene, const PreparedScene& prepared, const SceneWorld& world)
     {
         history_.write_row(scene, prepared, world);
-        if (vtk_) vtk_->write(prepared, world);
-        if (pictures_) pictures_->write(frame, last, scene, world);
+        if (vtk_) vtk_->add(world);
+        if (pictures_) pictures_->add(frame, last, world);
     }
-    void close() { history_.close(); }
+    /// Waits for the frames that are still being written, and throws what went wrong with one.
+    void finish_frames()
+    {
+        if (vtk_) vtk_->wait();
+        if (pictures_) pictures_->wait();
+        check_frames();
+    }
+    void close()
+    {
+        finish_frames();
+        history_.close();
+    }
 
   private:
+    void check_frames()
+    {
+        if (vtk_) vtk_->check();
+        if (pictures_) pictures_->check();
+    }
+
     History history_;
     std::optional<VtkFrames> vtk_;
     std::optional<Pictures> pictures_;
@@ -95,12 +116,11 @@ class Run {
 
     void go()
     {
-        const double frames = scene_.duration * scene_.output.frames_per_second;
-        const int last = std::max(1, static_cast<int>(std::ceil(frames * (1.0 - 1e-9))));
-        write_frame(0, false);
-        for (int frame = 1; frame <= last; ++frame) {
-            step_until(frame == last ? scene_.duration : frame / scene_.output.frames_per_second);
-            write_frame(frame, frame == last);
+        try {
+            step_from_frame_to_frame();
+        } catch (...) {
+            if (recorder_) recorder_->finish_frames(); // what went wrong with an earlier frame did so first
+            throw;
         }
         if (recorder_) recorder_->close();
     }
@@ -120,6 +140,17 @@ class Run {
     }
 
   private:
+    void step_from_frame_to_frame()
+    {
+        const double frames = scene_.duration * scene_.output.frames_per_second;
+        const int last = std::max(1, static_cast<int>(std::ceil(frames * (1.0 - 1e-9))));
+        add_frame(0, false);
+        for (int frame = 1; frame <= last; ++frame) {
+            step_until(frame == last ? scene_.duration : frame / scene_.output.frames_per_second);
+            add_frame(frame, frame == last);
+        }
+    }
+
     [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
     /// What is left up to the frame is cut into equal steps, so that none is left over that is tiny.
@@ -139,9 +170,9 @@ class Run {
             observer_.on_step({world_.fluid().time(), scene_.duration, seconds(), tally_.steps()});
         }
     }
-    void write_frame(int frame, bool last)
+    void add_frame(int frame, bool last)
     {
-        if (recorder_) recorder_->write_frame(frame, last, scene_, prepared_, world_);
+        if (recorder_) recorder_->add_frame(frame, last, scene_, prepared_, world_);
     }
 
     const SceneFile& scene_;

@@ -57,7 +57,7 @@ struct RunReport {
     double rest_density = 0.0;     ///< [kg/m^3]
     double simulated_seconds = 0.0;
     std::int64_t steps = 0;
-    double wall_seconds = 0.0; ///< of stepping and writing
+    double wall_seconds = 0.0; ///< of stepping, and of waiting for what is written
     StageSeconds stage_seconds;
     MeanAndMax iterations;      ///< per step, of all its solves
     MeanAndMax coupling_rounds; ///< of the pressure solve per step, until joints and contacts held and yielded with it

@@ -48,7 +48,9 @@ class RunFailure : public std::runtime_error {
 };
 
 /// Checks a scene, builds the fluid and its Bullet world, runs it and records it: report.json, history.csv, and what
-/// the scene's output asks for. Frames come at exact times; one at the start, one at the end.
+/// the scene's output asks for. Frames come at exact times; one at the start, one at the end. VTK frames and pictures
+/// are each made by a thread of their own from copies of the state, a few at most behind the run; when this returns or
+/// throws, all are written that the run got to.
 ///
 /// Throws InputError as check_scene does, before the directory of an older run is touched. Throws RunFailure for a
 /// state that is not finite and for results that cannot be written; what was recorded until then stays in
