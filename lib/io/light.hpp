@@ -6,6 +6,16 @@
 
 namespace flotsam {
 
+/// A ray from the camera.
+struct Sight {
+    Ray ray;
+    Vec3 backdrop; ///< what is seen where nothing is, linear
+    SampleSet samples;
+};
+
+/// What is behind everything; `height_in_picture` from -1 to 1. Linear.
+[[nodiscard]] Vec3 backdrop_color(float height_in_picture);
+
 /// What is seen along rays: one sun with soft shadows, a sky dimmed by near things, glass walls, a ground that melts
 /// into the backdrop.
 class Light {
@@ -13,14 +23,23 @@ class Light {
     /// `size`: diagonal of the scene [m]. Keeps references to both groups.
     Light(const RayGroup& solid, const RayGroup& walls, const PictureScene& scene, float size);
 
-    /// Linear colour; `height_in_picture` from -1 to 1.
-    [[nodiscard]] Vec3 seen_along(const Ray& ray, float height_in_picture, const SampleSet& samples) const;
+    /// Linear colours, of at most kPacket sights.
+    [[nodiscard]] PerRay<Vec3> seen_along(std::span<const Sight> sights) const;
 
   private:
-    [[nodiscard]] Vec3 shaded(const Surface& surface, const Vec3& view, const SampleSet& samples) const;
-    [[nodiscard]] Vec3 ground_color(const Vec3& point, const Vec3& backdrop, const SampleSet& samples) const;
-    [[nodiscard]] float sunlit(const Vec3& point, const Vec3& normal, const SampleSet& samples) const;
-    [[nodiscard]] float openness(const Vec3& point, const Vec3& normal, const SampleSet& samples) const;
+    /// What a ray ends on, behind glass.
+    struct End {
+        enum class Kind { backdrop, ground, surface } kind = Kind::backdrop;
+        Surface surface{};             ///< of the ground only point and normal
+        Vec3 glass = Vec3::Zero();     ///< light that the glass in front sends
+        float through = 1.0f;          ///< part of the light that passes it
+        float sun = 0.0f, open = 0.0f; ///< parts of the sun and of the sky that light it
+    };
+    [[nodiscard]] PerRay<End> ends_of(std::span<const Sight> sights) const;
+    [[nodiscard]] static End end_of(const Ray& ray, const std::optional<Surface>& solid, const Passed& passed);
+    void shine_on(PerRay<End>& ends, std::span<const Sight> sights) const;
+    [[nodiscard]] Vec3 color_of(const End& end, const Sight& sight) const;
+    [[nodiscard]] Vec3 shaded(const Surface& surface, const Vec3& view, float sun, float open) const;
     [[nodiscard]] float ground_distance(const Ray& ray) const;
 
     const RayGroup& solid_;

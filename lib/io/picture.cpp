@@ -6,6 +6,7 @@
 #include "io/ray_group.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -101,6 +102,57 @@ class Lens {
     Vec3 forward_, half_right_, half_up_;
 };
 
+/// Draws pixels, several at a time.
+class Eye {
+  public:
+    static constexpr std::size_t kPixels = kPacket / kSamplesPerPixel; ///< at a time
+
+    Eye(const Light& light, const Lens& lens, int width, int height)
+        : light_(light), lens_(lens), width_(width), height_(height)
+    {
+        for (int row = 0; row < height; ++row)
+            for (unsigned k = 0; k < kSamplesPerPixel; ++k) backdrops_.push_back(backdrop_color(y_in_picture(row, k)));
+    }
+    /// Those from number `first` up to `end`, row by row; at most kPixels.
+    void draw(std::size_t first, std::size_t end, Image& image) const
+    {
+        PerRay<Sight> sights;
+        std::array<float, kPixels> dither;
+        for (std::size_t index = first; index < end; ++index) {
+            const auto column = static_cast<int>(index % static_cast<std::size_t>(width_));
+            const auto row = static_cast<int>(index / static_cast<std::size_t>(width_));
+            const PixelPattern pattern = pixel_pattern(column, row);
+            dither[index - first] = pattern.first;
+            for (unsigned k = 0; k < kSamplesPerPixel; ++k)
+                sights[(index - first) * kSamplesPerPixel + k] = sight(column, row, pattern, k);
+        }
+        const auto seen = light_.seen_along({sights.data(), (end - first) * kSamplesPerPixel});
+        for (std::size_t index = first; index < end; ++index) {
+            Vec3 sum = Vec3::Zero();
+            for (unsigned k = 0; k < kSamplesPerPixel; ++k) sum += seen[(index - first) * kSamplesPerPixel + k];
+            store_srgb(sum / kSamplesPerPixel, dither[index - first], image.pixel(index));
+        }
+    }
+
+  private:
+    [[nodiscard]] float y_in_picture(int row, unsigned sample) const
+    {
+        return 1.0f - 2.0f * (static_cast<float>(row) + place_in_pixel(sample).second) / static_cast<float>(height_);
+    }
+    [[nodiscard]] Sight sight(int column, int row, const PixelPattern& pattern, unsigned k) const
+    {
+        const float x =
+            2.0f * (static_cast<float>(column) + place_in_pixel(k).first) / static_cast<float>(width_) - 1.0f;
+        return {lens_.ray(x, y_in_picture(row, k)), backdrops_[static_cast<std::size_t>(row) * kSamplesPerPixel + k],
+                SampleSet(pattern, k)};
+    }
+
+    const Light& light_;
+    const Lens& lens_;
+    int width_, height_;
+    std::vector<Vec3> backdrops_; ///< of each row's samples
+};
+
 /// World mesh as it is drawn. Walls are the thicker ones in 2-D, or body and glass would lie in one plane.
 TriangleMesh drawn(const PlacedMesh& placed, const PictureScene& scene, SurfaceKind kind)
 {
@@ -164,17 +216,10 @@ Image Renderer::render(const PictureScene& scene, int width, int height, const W
     // A ray that starts far away loses the digits that its secondary rays need.
     const double ahead = box.empty() ? 0.0 : std::max(0.0, (scene.camera.position - box.center()).norm() - 0.6 * size);
     const Lens lens(scene.camera, static_cast<double>(width) / height, ahead);
-    workers.for_each(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), [&](std::size_t index) {
-        const auto column = static_cast<int>(index % static_cast<std::size_t>(width));
-        const auto row = static_cast<int>(index / static_cast<std::size_t>(width));
-        Vec3 sum = Vec3::Zero();
-        for (unsigned k = 0; k < kSamplesPerPixel; ++k) {
-            const auto [dx, dy] = place_in_pixel(k);
-            const float x = 2.0f * (static_cast<float>(column) + dx) / static_cast<float>(width) - 1.0f;
-            const float y = 1.0f - 2.0f * (static_cast<float>(row) + dy) / static_cast<float>(height);
-            sum += light.seen_along(lens.ray(x, y), y, SampleSet(column, row, k));
-        }
-        store_srgb(sum / kSamplesPerPixel, pixel_pattern(column, row).first, image.pixel(index));
+    const Eye eye(light, lens, width, height);
+    workers.for_chunks(image.rgb.size() / 3, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t first = begin; first < end; first += Eye::kPixels)
+            eye.draw(first, std::min(first + Eye::kPixels, end), image);
     });
     return image;
 }

@@ -4,6 +4,8 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -41,7 +43,28 @@ struct Surface {
     Vec3 color;         ///< linear
 };
 
-/// Things that rays meet, in one acceleration structure: first all is added, then commit, then asked by any thread.
+/// Where a ray met something, as the ray tracer says it.
+struct RayHit {
+    float distance;
+    float u, v;  ///< place in a triangle
+    Vec3 normal; ///< not of length 1
+    unsigned part, primitive;
+};
+
+/// So many rays are traced together: what the ray tracer's packets hold on processors with AVX.
+inline constexpr std::size_t kPacket = 8;
+
+template <class T>
+using PerRay = std::array<T, kPacket>;
+
+/// Surfaces along a ray, near to far.
+struct Passed {
+    std::array<Surface, 12> surfaces;
+    std::size_t count = 0; ///< those beyond the twelve nearest are left out
+};
+
+/// Things that rays meet, in one acceleration structure: first all is added, then commit, then asked by any thread,
+/// about at most kPacket rays at a time. Rays that lie close together are answered fastest.
 class RayGroup {
   public:
     explicit RayGroup(RTCDevice device);
@@ -54,8 +77,12 @@ class RayGroup {
     /// Throws std::bad_alloc, std::runtime_error.
     void commit(const Workers& workers);
 
-    [[nodiscard]] std::optional<Surface> closest(const Ray& ray) const;
-    [[nodiscard]] bool blocked(const Ray& ray) const;
+    /// What each ray meets first.
+    [[nodiscard]] PerRay<std::optional<Surface>> closest(std::span<const Ray> rays) const;
+    /// All that each ray meets; of what lies closer than `step` [m] to the one before only that.
+    [[nodiscard]] PerRay<Passed> all_along(std::span<const Ray> rays, float step) const;
+    /// Whether each ray meets anything.
+    [[nodiscard]] PerRay<bool> blocked(std::span<const Ray> rays) const;
 
   private:
     struct Part {
@@ -65,6 +92,7 @@ class RayGroup {
         std::vector<Vec3> normals; ///< of triangles, 3 each
     };
     void attach(RTCGeometry geometry, Part part);
+    [[nodiscard]] Surface surface_at(const Ray& ray, const RayHit& hit) const;
     void check() const;
 
     RTCDevice device_;
