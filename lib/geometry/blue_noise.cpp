@@ -16,6 +16,12 @@ double crowding(double distance_sq, double reach)
     return gap_4 * gap_4;
 }
 
+/// A point near another one, and the weight that it gives it.
+struct Crowder {
+    std::size_t point;
+    double weight;
+};
+
 /// Binary heap of indices whose weights only sink, the heaviest on top; equal weights go by index.
 class CrowdHeap {
   public:
@@ -85,21 +91,22 @@ class CrowdHeap {
 } // namespace
 
 std::vector<std::size_t> eliminate_crowded(std::span<const Vec3d> points, std::size_t fixed, std::size_t count,
-                                           double reach)
+                                           double reach, const Workers& workers)
 {
     const PointGrid grid(points, reach);
+    std::vector<std::vector<Crowder>> around(points.size());
     std::vector<double> weights(points.size(), 0.0);
-    for (std::size_t i = 0; i < points.size(); ++i)
+    workers.for_each(points.size(), [&](std::size_t i) {
         grid.for_near(points[i], reach, [&](std::size_t j, double distance_sq) {
-            if (j != i) weights[i] += crowding(distance_sq, reach);
+            if (j == i) return;
+            around[i].push_back({j, crowding(distance_sq, reach)});
+            weights[i] += around[i].back().weight;
         });
+    });
     for (std::size_t i = 0; i < fixed; ++i) weights[i] = -std::numeric_limits<double>::infinity();
     CrowdHeap heap(std::move(weights));
     while (heap.size() > std::max(count, fixed)) {
-        const std::size_t gone = heap.pop();
-        grid.for_near(points[gone], reach, [&](std::size_t j, double distance_sq) {
-            if (j != gone) heap.lighten(j, crowding(distance_sq, reach));
-        });
+        for (const Crowder& crowder : around[heap.pop()]) heap.lighten(crowder.point, crowder.weight);
     }
     return heap.rest();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flotsam/core/parallel.hpp"
 #include "flotsam/core/types.hpp"
 
 #include <span>
@@ -11,6 +12,6 @@ namespace flotsam {
 /// go first, but none of the first `fixed`. `reach` is the distance up to which points crowd each other: twice the
 /// radius of discs that fill the surface. **Source:** Yuksel 2015, weighted sample elimination.
 [[nodiscard]] std::vector<std::size_t> eliminate_crowded(std::span<const Vec3d> points, std::size_t fixed,
-                                                         std::size_t count, double reach);
+                                                         std::size_t count, double reach, const Workers& workers);
 
 } // namespace flotsam

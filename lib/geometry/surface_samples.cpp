@@ -30,19 +30,19 @@ constexpr double kHole = 0.85;    ///< spacings from the next sample: a candidat
 
 /// Area of the surface that candidates stand for. The two layers of a solid little thicker than two insets, and the
 /// one layer of a thinner one that candidates reach from both sides, count as one.
-double covered_area(const SampleCandidates& candidates, double spacing)
+double covered_area(const SampleCandidates& candidates, double spacing, const Workers& workers)
 {
     const double reach = 0.6 * spacing;
     const PointGrid grid(positions_of(candidates.points), reach);
-    double area = 0.0;
-    for (const OffsetPoint& point : candidates.points) {
+    std::vector<double> scratch;
+    return workers.ordered_sum<double>(candidates.points.size(), scratch, [&](std::size_t i) {
+        const OffsetPoint& point = candidates.points[i];
         int same = 0, opposite = 0;
         grid.for_near(point.position, reach, [&](std::size_t j, double) {
             ++(candidates.points[j].direction.dot(point.direction) > -0.5 ? same : opposite);
         });
-        area += candidates.area_each * same / (same + opposite);
-    }
-    return area;
+        return candidates.area_each * same / (same + opposite);
+    });
 }
 
 double mesh_area(const TriangleMesh& mesh)
@@ -67,13 +67,14 @@ double rim_length(const OffsetSurface& offset)
 
 /// One step in which samples push their neighbours along the surface.
 void repel(std::vector<OffsetPoint>& samples, std::vector<Vec3d>& drift, std::size_t fixed, const OffsetSurface& offset,
-           double spacing)
+           double spacing, const Workers& workers)
 {
     drift.resize(samples.size(), Vec3d::Zero());
     const double reach = kReach * spacing;
     const std::vector<Vec3d> before = positions_of(samples);
     const PointGrid grid(before, reach);
-    for (std::size_t i = fixed; i < samples.size(); ++i) {
+    workers.for_each(samples.size() - fixed, [&](std::size_t k) {
+        const std::size_t i = fixed + k;
         Vec3d push = Vec3d::Zero();
         grid.for_near(before[i], reach, [&](std::size_t j, double distance_sq) {
             if (j == i || distance_sq == 0.0) return;
@@ -85,7 +86,7 @@ void repel(std::vector<OffsetPoint>& samples, std::vector<Vec3d>& drift, std::si
         if (length > longest) push *= longest / length;
         if (const auto moved = offset.project(before[i] + push, samples[i])) samples[i] = *moved;
         drift[i] = samples[i].position - before[i];
-    }
+    });
 }
 
 void drop_crowded(std::vector<OffsetPoint>& samples, double closest)
@@ -116,26 +117,27 @@ bool fill_holes(std::vector<OffsetPoint>& samples, const SampleCandidates& candi
 
 /// `samples` come as those that stay where they are; the rest is chosen from the candidates and evened out.
 void choose_samples(std::vector<OffsetPoint>& samples, const SampleCandidates& candidates, std::size_t count,
-                    const OffsetSurface& offset, double spacing)
+                    const OffsetSurface& offset, double spacing, const Workers& workers)
 {
     const std::size_t fixed = samples.size();
     samples.insert(samples.end(), candidates.points.begin(), candidates.points.end());
     std::vector<OffsetPoint> chosen;
-    for (std::size_t i : eliminate_crowded(positions_of(samples), fixed, count, kHexagonal * spacing))
+    for (std::size_t i : eliminate_crowded(positions_of(samples), fixed, count, kHexagonal * spacing, workers))
         chosen.push_back(samples[i]);
     samples = std::move(chosen);
     std::vector<Vec3d> drift;
-    for (int step = 0; step < kSteps; ++step) repel(samples, drift, fixed, offset, spacing);
+    for (int step = 0; step < kSteps; ++step) repel(samples, drift, fixed, offset, spacing, workers);
     for (int round = 0; round < 3; ++round) {
         drop_crowded(samples, kClosest * spacing);
         if (!fill_holes(samples, candidates, kHole * spacing)) return;
         drift.clear();
-        for (int step = 0; step < 5; ++step) repel(samples, drift, fixed, offset, spacing);
+        for (int step = 0; step < 5; ++step) repel(samples, drift, fixed, offset, spacing, workers);
     }
     drop_crowded(samples, kClosest * spacing);
 }
 
-std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const SurfaceSampleSettings& settings)
+std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const SurfaceSampleSettings& settings,
+                                      const Workers& workers)
 {
     const double d = settings.spacing;
     const double rough_count = mesh_area(offset.surface().mesh()) / (d * d);
@@ -144,9 +146,9 @@ std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const Surface
     std::vector<OffsetPoint> samples = sample_creases(offset, d);
     if (!candidates.points.empty()) {
         // Samples on a rim have half of their surroundings off the surface.
-        const double area = covered_area(candidates, d) + 0.5 * d * rim_length(offset);
+        const double area = covered_area(candidates, d, workers) + 0.5 * d * rim_length(offset);
         const auto count = static_cast<std::size_t>(std::max(1.0, std::round(area / (d * d))));
-        choose_samples(samples, candidates, count, offset, d);
+        choose_samples(samples, candidates, count, offset, d, workers);
     }
     sample_rods(samples, candidates.bare, offset, d);
     return samples;
@@ -162,14 +164,15 @@ void drop_wrong_side(std::vector<OffsetPoint>& samples, const SurfaceQuery& surf
 
 } // namespace
 
-SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
+SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings,
+                              const Workers& workers)
 {
     require(settings.spacing > 0.0, "sample spacing must be > 0 [m]", settings.spacing);
     require(settings.inset >= 0.0, "inset of samples must be >= 0 [m]", settings.inset);
     require(settings.dimensions == 2 || settings.dimensions == 3, "dimensions must be 2 or 3", settings.dimensions);
 
-    std::vector<OffsetPoint> points =
-        settings.dimensions == 2 ? sample_outline(surface, settings) : sample_layer({surface, settings}, settings);
+    std::vector<OffsetPoint> points = settings.dimensions == 2 ? sample_outline(surface, settings)
+                                                               : sample_layer({surface, settings}, settings, workers);
     if (settings.inset > 0.0 && settings.solid != SurfaceSampleSettings::Solid::both)
         drop_wrong_side(points, surface, settings.solid == SurfaceSampleSettings::Solid::inside);
     SurfaceSamples samples;

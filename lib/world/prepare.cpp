@@ -185,7 +185,7 @@ void FluidWorld::Impl::sample_surface_of(std::size_t owner, const SurfaceQuery& 
     sampling.inset = boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
     sampling.dimensions = settings.dimensions;
     sampling.solid = solid;
-    const SurfaceSamples samples = sample_surface(surface, sampling);
+    const SurfaceSamples samples = sample_surface(surface, sampling, workers);
     const std::vector<double> volumes =
         sample_volumes(samples.positions, samples.depth, settings.kernel, spacing(), settings.dimensions);
     for (std::size_t b = 0; b < volumes.size(); ++b) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flotsam/core/parallel.hpp"
 #include "flotsam/geometry/surface_query.hpp"
 
 #include <cstdint>
@@ -31,11 +32,13 @@ struct SurfaceSamples {
 /// two closer than 0.75 spacings, no point of the surface farther than about 0.85 from one. Around bends of more than
 /// 180 degrees (the outside of a container) the surface is round; along its sharp edges and at the rims of open sheets
 /// samples stand in rows, with one in each corner. Where the solid is thinner than two insets they lie in its middle,
-/// in one layer. In two dimensions they stand at equal steps along the outline. The same input gives the same samples.
+/// in one layer. In two dimensions they stand at equal steps along the outline. The same input gives the same samples,
+/// whatever `workers`.
 /// **Source:** Yuksel 2015 (sample elimination), then repulsion along the surface.
 ///
 /// Throws std::invalid_argument for settings out of range, InputError in two dimensions for a mesh that does not cross
 /// the plane y = 0.
-[[nodiscard]] SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings);
+[[nodiscard]] SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings,
+                                            const Workers& workers = Workers(1));
 
 } // namespace flotsam
