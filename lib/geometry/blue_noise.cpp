@@ -3,6 +3,7 @@
 #include "geometry/point_grid.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 
@@ -15,12 +16,6 @@ double crowding(double distance_sq, double reach)
     const double gap_sq = gap * gap, gap_4 = gap_sq * gap_sq;
     return gap_4 * gap_4;
 }
-
-/// A point near another one, and the weight that it gives it.
-struct Crowder {
-    std::size_t point;
-    double weight;
-};
 
 /// Binary heap of indices whose weights only sink, the heaviest on top; equal weights go by index.
 class CrowdHeap {
@@ -94,19 +89,29 @@ std::vector<std::size_t> eliminate_crowded(std::span<const Vec3d> points, std::s
                                            double reach, const Workers& workers)
 {
     const PointGrid grid(points, reach);
-    std::vector<std::vector<Crowder>> around(points.size());
     std::vector<double> weights(points.size(), 0.0);
-    workers.for_each(points.size(), [&](std::size_t i) {
-        grid.for_near(points[i], reach, [&](std::size_t j, double distance_sq) {
-            if (j == i) return;
-            around[i].push_back({j, crowding(distance_sq, reach)});
-            weights[i] += around[i].back().weight;
-        });
+    // Who is near point i: count_near[i] of near[its chunk], from first[i] on.
+    std::vector<std::vector<std::uint32_t>> near(Workers::chunk_count(points.size()));
+    std::vector<std::uint32_t> first(points.size()), count_near(points.size());
+    workers.for_chunks(points.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            first[i] = static_cast<std::uint32_t>(near[chunk].size());
+            grid.for_near(points[i], reach, [&](std::size_t j, double distance_sq) {
+                if (j == i) return;
+                near[chunk].push_back(static_cast<std::uint32_t>(j));
+                weights[i] += crowding(distance_sq, reach);
+            });
+            count_near[i] = static_cast<std::uint32_t>(near[chunk].size()) - first[i];
+        }
+        near[chunk].shrink_to_fit();
     });
     for (std::size_t i = 0; i < fixed; ++i) weights[i] = -std::numeric_limits<double>::infinity();
     CrowdHeap heap(std::move(weights));
     while (heap.size() > std::max(count, fixed)) {
-        for (const Crowder& crowder : around[heap.pop()]) heap.lighten(crowder.point, crowder.weight);
+        const std::size_t gone = heap.pop();
+        const std::uint32_t* others = near[gone / Workers::kChunk].data() + first[gone];
+        for (std::uint32_t k = 0; k < count_near[gone]; ++k)
+            heap.lighten(others[k], crowding((points[others[k]] - points[gone]).squaredNorm(), reach));
     }
     return heap.rest();
 }

@@ -52,6 +52,7 @@
 #include "flotsam/world/fluid_world.hpp"
 #include "support/free_bodies.hpp"
 
+#include <array>
 #include <chrono>
 #include <cstdio>
 
@@ -120,11 +121,22 @@ Cost run(const Case& c, PressureSettings::Solver solver)
 
 void print_row(const Case& c)
 {
-    const Cost jacobi = run(c, PressureSettings::Solver::iisph), krylov = run(c, PressureSettings::Solver::mprgp);
-    std::printf("| %d-D | %d | %.0e | %g | %.1f | %.1f, %.1f | %.1f, %.1f | %.1f, %.1f | %.2f | %d, %d |\n",
-                c.dimensions, c.layers, c.tolerance, c.density_ratio, 1e3 * krylov.time_step, jacobi.iterations,
-                krylov.iterations, jacobi.products, krylov.products, jacobi.milliseconds, krylov.milliseconds,
-                jacobi.milliseconds / krylov.milliseconds, jacobi.unconverged, krylov.unconverged);
+    using Solver = PressureSettings::Solver;
+    const std::array<Cost, 3> costs = {run(c, Solver::iisph), run(c, Solver::mprgp), run(c, Solver::spg)};
+    std::printf("| %d-D | %d | %.0e | %g | %.1f |", c.dimensions, c.layers, c.tolerance, c.density_ratio,
+                1e3 * costs[2].time_step);
+    const auto print = [&](const char* format, auto value) {
+        for (std::size_t k = 0; k < costs.size(); ++k) {
+            std::printf(k == 0 ? " " : ", ");
+            std::printf(format, value(costs[k]));
+        }
+        std::printf(" |");
+    };
+    print("%.1f", [](const Cost& cost) { return cost.iterations; });
+    print("%.1f", [](const Cost& cost) { return cost.products; });
+    print("%.2f", [](const Cost& cost) { return cost.milliseconds; });
+    print("%d", [](const Cost& cost) { return cost.unconverged; });
+    std::puts("");
     std::fflush(stdout);
 }
 
@@ -133,9 +145,9 @@ void print_row(const Case& c)
 int main()
 {
     std::puts(
-        "| | layers | tolerance | density ratio | dt [ms] | iterations iisph, mprgp | products | ms a step | ratio | "
+        "| | layers | tolerance | density ratio | dt [ms] | iterations iisph, mprgp, spg | products | ms a step | "
         "unconverged |");
-    std::puts("|---|---|---|---|---|---|---|---|---|---|");
+    std::puts("|---|---|---|---|---|---|---|---|---|");
     for (const int layers : {10, 30, 60, 100}) print_row({.layers = layers});
     for (const double tolerance : {1e-2, 1e-4, 1e-5}) print_row({.tolerance = tolerance});
     for (const double ratio : {0.001, 0.01, 0.1, 0.5, 1.0, 10.0, 20.0}) print_row({.density_ratio = ratio});
