@@ -50,6 +50,16 @@ DistanceBounds::DistanceBounds(const SurfaceQuery& surface, double spacing, doub
     });
 }
 
+double DistanceBounds::rough_at(const Vec3d& point) const
+{
+    const Vec3d place = (point - origin_) / spacing_;
+    const Vec3d last = nodes_.cast<double>().array() - 1.0;
+    if (!((place.array() >= 0.0).all() && (place.array() < last.array()).all())) return band_;
+    const Eigen::Vector3i node = (place.array() + 0.5).cast<int>();
+    return static_cast<double>(distance_[index(node.x(), node.y(), node.z())]) -
+           spacing_ * (place - node.cast<double>()).norm();
+}
+
 double DistanceBounds::at(const Vec3d& point) const
 {
     const Vec3d place = (point - origin_) / spacing_;

@@ -15,6 +15,8 @@ class DistanceBounds {
     DistanceBounds(const SurfaceQuery& surface, double spacing, double band, const Workers& workers);
 
     [[nodiscard]] double at(const Vec3d& point) const;
+    /// The same from the nearest node alone: a lower bound that takes an eighth of the time.
+    [[nodiscard]] double rough_at(const Vec3d& point) const;
 
   private:
     [[nodiscard]] std::size_t index(int x, int y, int z) const

@@ -10,6 +10,7 @@ void WallGuard::build(const std::vector<GuardedSurface>& surfaces, double partic
 {
     surfaces_.clear();
     bounds_.clear();
+    reach_.clear();
     for (const GuardedSurface& surface : surfaces) change(surfaces_.size(), surface, particle_spacing, workers);
 }
 
@@ -19,10 +20,14 @@ void WallGuard::change(std::size_t k, const GuardedSurface& surface, double part
     if (k == surfaces_.size()) {
         surfaces_.emplace_back();
         bounds_.emplace_back();
+        reach_.emplace_back();
     }
     surfaces_[k] = surface;
     bounds_[k].reset();
     if (surface.query != nullptr) bounds_[k].emplace(*surface.query, particle_spacing, 3.0 * particle_spacing, workers);
+    reach_[k] = 0.0;
+    if (surface.query != nullptr)
+        for (const Vec3d& vertex : surface.query->mesh().vertices) reach_[k] = std::max(reach_[k], vertex.norm());
     clearance_ = 0.02 * particle_spacing;
 }
 
@@ -31,6 +36,9 @@ GuardReport WallGuard::stop(std::span<const Vec4> from, std::span<Vec4> to, std:
                             std::span<Wrench> impulses)
 {
     FLOTSAM_ASSERT(motion.size() == surfaces_.size() && impulses.size() == surfaces_.size(), "one of each per surface");
+    turn_.resize(motion.size());
+    for (std::size_t k = 0; k < motion.size(); ++k)
+        turn_[k] = motion[k].before.orientation.angularDistance(motion[k].after.orientation);
     chunks_.resize(std::max(chunks_.size(), Workers::chunk_count(from.size())));
     workers.for_chunks(from.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         Stopped& out = chunks_[chunk];
@@ -52,14 +60,26 @@ GuardReport WallGuard::stop(std::span<const Vec4> from, std::span<Vec4> to, std:
     return report;
 }
 
+/// Whether the surface is out of reach by the sphere about its owner's centre that holds it, which no turn changes.
+bool WallGuard::passes_far(std::size_t k, const Vec3d& from, const Vec3d& to, const GuardedMotion& motion) const
+{
+    const Vec3d a = from - motion.before.position, b = to - motion.after.position;
+    const double length_a = a.norm();
+    // The path's length in the owner's frame is at most this.
+    const double length = (b - a).norm() + turn_[k] * length_a;
+    return length_a + b.norm() - 2.0 * reach_[k] > length + 2.0 * clearance_;
+}
+
 bool WallGuard::may_hit(const Vec3d& from, const Vec3d& to, std::span<const GuardedMotion> motion) const
 {
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-        if (!bounds_[k]) continue;
+        if (!bounds_[k] || passes_far(k, from, to, motion[k])) continue;
         const Vec3d a = motion[k].before.to_body(from);
         const Vec3d b = motion[k].after.to_body(to);
         // A path of length L that passes the surface has distance(a) + distance(b) <= L.
-        if (bounds_[k]->at(a) + bounds_[k]->at(b) <= (b - a).norm() + 2.0 * clearance_) return true;
+        const double length = (b - a).norm() + 2.0 * clearance_;
+        if (bounds_[k]->rough_at(a) + bounds_[k]->rough_at(b) > length) continue;
+        if (bounds_[k]->at(a) + bounds_[k]->at(b) <= length) return true;
     }
     return false;
 }

@@ -59,6 +59,7 @@ class WallGuard {
         double fraction;
         Vec3d normal; ///< world frame, against the motion
     };
+    [[nodiscard]] bool passes_far(std::size_t k, const Vec3d& from, const Vec3d& to, const GuardedMotion& motion) const;
     [[nodiscard]] bool may_hit(const Vec3d& from, const Vec3d& to, std::span<const GuardedMotion> motion) const;
     [[nodiscard]] std::optional<Hit> first_hit(const Vec3d& from, const Vec3d& to,
                                                std::span<const GuardedMotion> motion) const;
@@ -67,7 +68,9 @@ class WallGuard {
 
     std::vector<GuardedSurface> surfaces_;
     std::vector<std::optional<DistanceBounds>> bounds_;
-    double clearance_ = 0.0; ///< how far in front of a surface a stopped particle is put [m]
+    std::vector<double> reach_; ///< of each surface, from the origin of its mesh [m]
+    std::vector<double> turn_;  ///< of each owner in the step under way [rad]
+    double clearance_ = 0.0;    ///< how far in front of a surface a stopped particle is put [m]
     std::vector<Stopped> chunks_;
 };
 
