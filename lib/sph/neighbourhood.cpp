@@ -1,7 +1,7 @@
 #include "flotsam/sph/neighbourhood.hpp"
 
 #include "flotsam/core/contracts.hpp"
-#include "sph/pair_passes.hpp"
+#include "sph/simd/search_passes.hpp"
 
 #include <algorithm>
 
@@ -11,13 +11,13 @@ void NeighbourSearch::find_distances(Scalar support, const CellGrid& grid, const
                                      std::span<const Vec4> points, bool same, const Workers& workers, Pairs& pairs)
 {
     FLOTSAM_ASSERT(grid.inv_cell * support <= Scalar(1.001), "a cell must be at least one support radius wide");
-    const pair_passes::Search search{&grid, &lists, points, same, support};
+    const simd::Search search{&grid, &lists, points, same, support};
     const std::size_t count = points.size();
     pairs.start.resize(count + 1);
     pairs.start[0] = 0;
     pairs.kernel_sum.resize(count);
     workers.for_chunks(count, [&](std::size_t, std::size_t begin, std::size_t end) {
-        pair_passes::count_neighbours(search, begin, end, pairs.start.data() + begin + 1);
+        simd::count_neighbours(search, begin, end, pairs.start.data() + begin + 1);
     });
     for (std::size_t i = 0; i < count; ++i) pairs.start[i + 1] += pairs.start[i];
     const std::size_t total = pairs.start[count] + Pairs::kSlack;
@@ -29,7 +29,7 @@ void NeighbourSearch::find_distances(Scalar support, const CellGrid& grid, const
     std::fill(pairs.index.end() - Pairs::kSlack, pairs.index.end(), 0);
     std::fill(pairs.slope.end() - Pairs::kSlack, pairs.slope.end(), Scalar(0));
     workers.for_chunks(count, [&](std::size_t, std::size_t begin, std::size_t end) {
-        pair_passes::write_neighbours(search, begin, end, pairs);
+        simd::write_neighbours(search, begin, end, pairs);
     });
 }
 
@@ -40,7 +40,7 @@ void NeighbourSearch::find_with(const Spline& kernel, const CellGrid& grid, cons
 {
     find_distances(kernel.support(), grid, lists, points, same, workers, pairs);
     workers.for_chunks(points.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        pair_passes::evaluate_kernel(kernel, weights, begin, end, pairs);
+        simd::evaluate_kernel(kernel, weights, begin, end, pairs);
     });
 }
 

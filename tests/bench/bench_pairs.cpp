@@ -1,7 +1,8 @@
 // The loops over pairs by themselves: for each instruction set that the processor has, one thread and two. `pairs` a
 // second count pairs, `points` a second points; the water is a jittered cubic lattice in the order of its cells.
 #include "flotsam/sph/neighbourhood.hpp"
-#include "sph/pair_passes.hpp"
+#include "sph/simd/instruction_sets.hpp"
+#include "sph/simd/pair_sums.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -57,7 +58,7 @@ struct Water {
 template <class Pass>
 void run(benchmark::State& state, const std::string& set, int threads, int side, KernelKind kind, Pass&& pass)
 {
-    pair_passes::use_instruction_set(set);
+    simd::use_instruction_set(set);
     Water water(side, kind, threads);
     for (auto _ : state) pass(water);
     const double each = static_cast<double>(state.iterations());
@@ -66,13 +67,13 @@ void run(benchmark::State& state, const std::string& set, int threads, int side,
     state.counters["points"] =
         benchmark::Counter(each * static_cast<double>(water.position.size()), benchmark::Counter::kIsRate);
     state.counters["neighbours"] = static_cast<double>(water.pairs.size()) / static_cast<double>(water.position.size());
-    pair_passes::use_instruction_set("");
+    simd::use_instruction_set("");
 }
 
 void add(const std::string& name, int side, void (*pass)(Water&))
 {
     for (const KernelKind kind : {KernelKind::quintic, KernelKind::cubic})
-        for (const std::string& set : pair_passes::instruction_sets())
+        for (const std::string& set : simd::instruction_sets())
             for (const int threads : {1, 2}) {
                 const std::string full = name + (kind == KernelKind::quintic ? "/quintic/" : "/cubic/") + set +
                                          "/threads:" + std::to_string(threads);
@@ -99,26 +100,25 @@ int main(int argc, char** argv)
         w.find();
     });
     add("sum_gradients", 40, [](Water& w) {
-        in_chunks(w, [&](auto begin, auto end) { pair_passes::sum_gradients(w.pairs, w.at, begin, end, w.strain); });
+        in_chunks(w, [&](auto begin, auto end) { simd::sum_gradients(w.pairs, w.at, begin, end, w.strain); });
     });
     add("sum_differences", 40, [](Water& w) {
         static std::vector<Scalar> out;
         out.resize(w.position.size());
-        in_chunks(w, [&](auto begin, auto end) {
-            pair_passes::sum_differences(w.pairs, w.position, w.velocity, begin, end, out);
-        });
+        in_chunks(
+            w, [&](auto begin, auto end) { simd::sum_differences(w.pairs, w.position, w.velocity, begin, end, out); });
     });
     add("fit_linear", 40, [](Water& w) {
         in_chunks(w, [&](auto begin, auto end) {
-            std::array<pair_passes::LinearFit, Workers::kChunk> fits;
-            pair_passes::fit_linear(w.pairs, w.position, w.velocity, begin, end, fits.data());
+            std::array<simd::LinearFit, Workers::kChunk> fits;
+            simd::fit_linear(w.pairs, w.position, w.velocity, begin, end, fits.data());
             benchmark::DoNotOptimize(fits);
         });
     });
     add("sum_viscous_pulls", 40, [](Water& w) {
-        const pair_passes::ViscousPull pull{Scalar(1e-6), Scalar(1e-3), Scalar(1), Scalar(1e-6)};
+        const simd::ViscousPull pull{Scalar(1e-6), Scalar(1e-3), Scalar(1), Scalar(1e-6)};
         in_chunks(w, [&](auto begin, auto end) {
-            pair_passes::sum_viscous_pulls(w.pairs, w.position, w.velocity, w.position, pull, begin, end, w.strain);
+            simd::sum_viscous_pulls(w.pairs, w.position, w.velocity, w.position, pull, begin, end, w.strain);
         });
     });
     benchmark::Initialize(&argc, argv);

@@ -1,6 +1,6 @@
 #include "sph/forces/viscosity.hpp"
 
-#include "sph/pair_passes.hpp"
+#include "sph/simd/pair_sums.hpp"
 
 #include <Eigen/LU>
 
@@ -38,10 +38,10 @@ void Viscosity::find_strains(const ViscositySettings& settings, const FluidState
     velocity_.resize(fluid.size());
     strain_.resize(fluid.size());
     workers.for_chunks(fluid.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        std::array<pair_passes::LinearFit, Workers::kChunk> fits;
-        pair_passes::fit_linear(pairs, fluid.position, fluid.velocity, begin, end, fits.data());
+        std::array<simd::LinearFit, Workers::kChunk> fits;
+        simd::fit_linear(pairs, fluid.position, fluid.velocity, begin, end, fits.data());
         for (std::size_t i = begin; i < end; ++i) {
-            const pair_passes::LinearFit& fit = fits[i - begin];
+            const simd::LinearFit& fit = fits[i - begin];
             const auto& s = fit.shape;
             Mat3 shape, slope;
             shape << s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2];
@@ -70,7 +70,7 @@ void Viscosity::add_between_particles(const ViscositySettings& settings, double 
 {
     const Scalar factor =
         static_cast<Scalar>(2.0 * (settings.dimensions + 2) * dt * fluid.particle_mass / settings.rest_density);
-    pair_passes::ViscousPull pull;
+    simd::ViscousPull pull;
     pull.viscosity = static_cast<Scalar>(settings.kinematic_viscosity);
     pull.width = static_cast<Scalar>(settings.dissipation * settings.spacing);
     pull.softening_sq = softening_sq(settings);
@@ -80,7 +80,7 @@ void Viscosity::add_between_particles(const ViscositySettings& settings, double 
     if (dissipates) find_strains(settings, fluid, pairs, workers);
     change_.resize(fluid.size());
     workers.for_chunks(fluid.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        pair_passes::sum_viscous_pulls(pairs, dissipates ? position_ : fluid.position,
+        simd::sum_viscous_pulls(pairs, dissipates ? position_ : fluid.position,
                                        dissipates ? velocity_ : fluid.velocity, strain_, pull, begin, end, change_);
         for (std::size_t i = begin; i < end; ++i) velocity[i] += factor * change_[i];
     });

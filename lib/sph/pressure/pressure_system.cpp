@@ -1,7 +1,7 @@
 #include "sph/pressure/pressure_system.hpp"
 
 #include "flotsam/core/contracts.hpp"
-#include "sph/pair_passes.hpp"
+#include "sph/simd/pair_sums.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -24,7 +24,7 @@ void PressureSystem::velocity_change(std::span<const Scalar> x, std::span<Vec4> 
         at[i][3] = x[i];
     });
     workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        pair_passes::sum_gradients(*pairs_, at, begin, end, dv);
+        simd::sum_gradients(*pairs_, at, begin, end, dv);
         for (std::size_t i = begin; i < end; ++i) dv[i] = -mass_ * dv[i] - x[i] * contacts_->gradient[i];
     });
 }
@@ -33,7 +33,7 @@ void PressureSystem::density_rate(std::span<const Vec4> velocity, std::span<cons
                                   std::span<Scalar> rate) const
 {
     workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        pair_passes::sum_differences(*pairs_, position_, velocity, begin, end, rate);
+        simd::sum_differences(*pairs_, position_, velocity, begin, end, rate);
         for (std::size_t i = begin; i < end; ++i) {
             rate[i] = mass_ * rate[i] + velocity[i].dot(contacts_->gradient[i]); // w is zero in either
         }
@@ -66,7 +66,7 @@ void PressureSystem::fluid_diagonal(std::span<Scalar> diagonal) const
     std::vector<Vec4>& sums = *scratch_;
     sums.resize(size());
     workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        pair_passes::sum_gradient_squares(*pairs_, position_, begin, end, sums);
+        simd::sum_gradient_squares(*pairs_, position_, begin, end, sums);
         for (std::size_t i = begin; i < end; ++i) {
             const Vec3 total = (mass_ * sums[i] + contacts_->gradient[i]).head<3>();
             diagonal[i] = total.squaredNorm() + mass_ * mass_ * sums[i][3];

@@ -1,4 +1,5 @@
-#include "sph/pair_passes.hpp"
+#include "sph/simd/instruction_sets.hpp"
+#include "sph/simd/pair_sums.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -12,8 +13,8 @@ using Mat3 = Mat3d;
 
 /// Restores the best instruction set however the test ends.
 struct InstructionSet {
-    explicit InstructionSet(const std::string& name) { pair_passes::use_instruction_set(name); }
-    ~InstructionSet() { pair_passes::use_instruction_set(""); }
+    explicit InstructionSet(const std::string& name) { simd::use_instruction_set(name); }
+    ~InstructionSet() { simd::use_instruction_set(""); }
     InstructionSet(const InstructionSet&) = delete;
     InstructionSet& operator=(const InstructionSet&) = delete;
 };
@@ -54,7 +55,7 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
 {
     // Row lengths of 0 to about 90, so that every rest of a register occurs.
     const std::size_t count = GENERATE(0u, 1u, 2u, 40u, 257u, 1200u);
-    const std::vector<std::string> sets = pair_passes::instruction_sets();
+    const std::vector<std::string> sets = simd::instruction_sets();
     REQUIRE_FALSE(sets.empty());
     CAPTURE(count);
     Points points(count);
@@ -70,7 +71,7 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
         NeighbourSearch().find(kernel, grid, lists, points.position, true, points.weights, workers, pairs);
         REQUIRE(pairs.rows() == count);
         const double volume = std::pow(Points::kSpacing, 3);
-        pair_passes::ViscousPull pull;
+        simd::ViscousPull pull;
         pull.viscosity = Scalar(0.01);
         pull.width = Scalar(0.02);
         pull.most = Scalar(0.03);
@@ -82,12 +83,12 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
         }
         std::vector<Vec4> gradients(count), squares(count), pulls(count);
         std::vector<Scalar> differences(count);
-        std::vector<pair_passes::LinearFit> fits(count);
-        pair_passes::sum_gradients(pairs, at, 0, count, gradients);
-        pair_passes::sum_differences(pairs, points.position, points.velocity, 0, count, differences);
-        pair_passes::sum_gradient_squares(pairs, points.position, 0, count, squares);
-        pair_passes::fit_linear(pairs, points.position, points.velocity, 0, count, fits.data());
-        pair_passes::sum_viscous_pulls(pairs, at, fast, points.strain, pull, 0, count, pulls);
+        std::vector<simd::LinearFit> fits(count);
+        simd::sum_gradients(pairs, at, 0, count, gradients);
+        simd::sum_differences(pairs, points.position, points.velocity, 0, count, differences);
+        simd::sum_gradient_squares(pairs, points.position, 0, count, squares);
+        simd::fit_linear(pairs, points.position, points.velocity, 0, count, fits.data());
+        simd::sum_viscous_pulls(pairs, at, fast, points.strain, pull, 0, count, pulls);
         for (std::size_t i = 0; i < count; ++i) {
             std::vector<std::uint32_t> expected,
                 found(pairs.index.begin() + pairs.start[i], pairs.index.begin() + pairs.start[i + 1]);
@@ -148,5 +149,5 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
 
 TEST_CASE("an instruction set that the processor does not have is refused", "[sph]")
 {
-    CHECK_THROWS(pair_passes::use_instruction_set("abacus"));
+    CHECK_THROWS(simd::use_instruction_set("abacus"));
 }

@@ -1,0 +1,171 @@
+// Compiled once for each instruction set: foreach_target.h includes this file again and again.
+#include "sph/simd/targets.hpp"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sph/simd/pair_sums.cpp" // NOLINT
+#include <hwy/foreach_target.h>
+
+#include "sph/simd/lanes.hpp"
+#include "sph/simd/pair_sums.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace flotsam::simd::HWY_NAMESPACE {
+
+void sum_gradients(const Pairs& pairs, const Vec4* points, std::size_t begin, std::size_t end, Vec4* out)
+{
+    const V zero = hn::Zero(Floats());
+    for (std::size_t i = begin; i < end; ++i) {
+        const V4 own = broadcast(points[i]);
+        V3 sum{zero, zero, zero};
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
+            const V4 other = load_transposed(points, pairs.index.data() + k);
+            const V3 x = difference(own, other);
+            const V factor = hn::Mul(slope, hn::Add(own.w, other.w));
+            sum = {hn::MulAdd(factor, x.x, sum.x), hn::MulAdd(factor, x.y, sum.y), hn::MulAdd(factor, x.z, sum.z)};
+        });
+        store_vec3(sum, out + i);
+    }
+}
+
+void sum_differences(const Pairs& pairs, const Vec4* position, const Vec4* velocity, std::size_t begin, std::size_t end,
+                     Scalar* out)
+{
+    for (std::size_t i = begin; i < end; ++i) {
+        const V4 own = broadcast(position[i]), own_v = broadcast(velocity[i]);
+        V sum = hn::Zero(Floats());
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
+            const V3 x = difference(own, load_transposed(position, pairs.index.data() + k));
+            const V3 v = difference(own_v, load_transposed(velocity, pairs.index.data() + k));
+            sum = hn::MulAdd(slope, dot(x, v), sum);
+        });
+        out[i] = sum_lanes(sum);
+    }
+}
+
+void sum_gradient_squares(const Pairs& pairs, const Vec4* position, std::size_t begin, std::size_t end, Vec4* out)
+{
+    const V zero = hn::Zero(Floats());
+    for (std::size_t i = begin; i < end; ++i) {
+        const V4 own = broadcast(position[i]);
+        V3 sum{zero, zero, zero};
+        V squares = zero;
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
+            const V3 x = difference(own, load_transposed(position, pairs.index.data() + k));
+            sum = {hn::MulAdd(slope, x.x, sum.x), hn::MulAdd(slope, x.y, sum.y), hn::MulAdd(slope, x.z, sum.z)};
+            squares = hn::MulAdd(hn::Mul(slope, slope), dot(x, x), squares);
+        });
+        store_vec3(sum, out + i);
+        reinterpret_cast<float*>(out + i)[3] = sum_lanes(squares);
+    }
+}
+
+void fit_linear(const Pairs& pairs, const Vec4* position, const Vec4* velocity, std::size_t begin, std::size_t end,
+                LinearFit* fits)
+{
+    const V zero = hn::Zero(Floats());
+    for (std::size_t i = begin; i < end; ++i) {
+        const V4 own = broadcast(position[i]), own_v = broadcast(velocity[i]);
+        V3 by_x{zero, zero, zero}, by_y = by_x, by_z = by_x, straight = by_x, crossed = by_x;
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
+            const V3 x = difference(load_transposed(position, pairs.index.data() + k), own);
+            const V3 v = difference(load_transposed(velocity, pairs.index.data() + k), own_v);
+            // grad W_ij = slope (x_i - x_j) = -slope x
+            const V gx = hn::Neg(hn::Mul(slope, x.x)), gy = hn::Neg(hn::Mul(slope, x.y)),
+                    gz = hn::Neg(hn::Mul(slope, x.z));
+            by_x = {hn::MulAdd(gx, v.x, by_x.x), hn::MulAdd(gx, v.y, by_x.y), hn::MulAdd(gx, v.z, by_x.z)};
+            by_y = {hn::MulAdd(gy, v.x, by_y.x), hn::MulAdd(gy, v.y, by_y.y), hn::MulAdd(gy, v.z, by_y.z)};
+            by_z = {hn::MulAdd(gz, v.x, by_z.x), hn::MulAdd(gz, v.y, by_z.y), hn::MulAdd(gz, v.z, by_z.z)};
+            straight = {hn::MulAdd(gx, x.x, straight.x), hn::MulAdd(gy, x.y, straight.y),
+                        hn::MulAdd(gz, x.z, straight.z)};
+            crossed = {hn::MulAdd(gx, x.y, crossed.x), hn::MulAdd(gx, x.z, crossed.y), hn::MulAdd(gy, x.z, crossed.z)};
+        });
+        LinearFit& fit = fits[i - begin];
+        fit.velocity = {sum_lanes(by_x.x), sum_lanes(by_y.x), sum_lanes(by_z.x), sum_lanes(by_x.y), sum_lanes(by_y.y),
+                        sum_lanes(by_z.y), sum_lanes(by_x.z), sum_lanes(by_y.z), sum_lanes(by_z.z)};
+        fit.shape = {sum_lanes(straight.x), sum_lanes(straight.y), sum_lanes(straight.z),
+                     sum_lanes(crossed.x),  sum_lanes(crossed.y),  sum_lanes(crossed.z)};
+    }
+}
+
+void sum_viscous_pulls(const Pairs& pairs, const Vec4* position, const Vec4* velocity, const Vec4* strain,
+                       const ViscousPull& pull, std::size_t begin, std::size_t end, Vec4* out)
+{
+    const V zero = hn::Zero(Floats()), soft = set(pull.softening_sq), nu = set(pull.viscosity), width = set(pull.width),
+            most = set(pull.most), two = set(2);
+    const bool dissipates = pull.width > 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        const V4 own = broadcast(position[i]), own_v = broadcast(velocity[i]);
+        const V4 own_s = dissipates ? broadcast(strain[i]) : V4{zero, zero, zero, zero};
+        V3 sum{zero, zero, zero};
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
+            const std::uint32_t* index = pairs.index.data() + k;
+            const V4 other = load_transposed(position, index), other_v = load_transposed(velocity, index);
+            const V3 x = difference(own, other);
+            const V s = dot(x, difference(own_v, other_v));
+            const V distance_sq = hn::Add(dot(x, x), soft);
+            V strength = hn::Mul(nu, s);
+            if (dissipates) {
+                const V4 other_s = load_transposed(strain, index);
+                const V3 straight{hn::Add(own.w, other.w), hn::Add(own_v.w, other_v.w), hn::Add(own_s.x, other_s.x)};
+                const V xy = hn::Add(own_s.y, other_s.y), xz = hn::Add(own_s.z, other_s.z),
+                        yz = hn::Add(own_s.w, other_s.w);
+                const V crossed = hn::MulAdd(hn::Mul(x.x, x.y), xy,
+                                             hn::MulAdd(hn::Mul(x.x, x.z), xz, hn::Mul(hn::Mul(x.y, x.z), yz)));
+                const V linear =
+                    hn::MulAdd(two, crossed, dot({hn::Mul(x.x, x.x), hn::Mul(x.y, x.y), hn::Mul(x.z, x.z)}, straight));
+                const V q = hn::Clamp(hn::Sub(s, linear), hn::Min(s, zero), hn::Max(s, zero));
+                const V viscosity = hn::Min(most, hn::Div(hn::Mul(width, hn::Abs(q)), hn::Sqrt(distance_sq)));
+                strength = hn::MulAdd(viscosity, q, strength);
+            }
+            const V factor = hn::Mul(slope, hn::Div(strength, distance_sq));
+            sum = {hn::MulAdd(factor, x.x, sum.x), hn::MulAdd(factor, x.y, sum.y), hn::MulAdd(factor, x.z, sum.z)};
+        });
+        store_vec3(sum, out + i);
+    }
+}
+
+} // namespace flotsam::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace flotsam::simd {
+
+HWY_EXPORT(sum_gradients);
+HWY_EXPORT(sum_differences);
+HWY_EXPORT(sum_gradient_squares);
+HWY_EXPORT(fit_linear);
+HWY_EXPORT(sum_viscous_pulls);
+
+void sum_gradients(const Pairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
+                   std::span<Vec4> out)
+{
+    HWY_DYNAMIC_DISPATCH(sum_gradients)(pairs, at.data(), begin, end, out.data());
+}
+
+void sum_differences(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+                     std::size_t begin, std::size_t end, std::span<Scalar> out)
+{
+    HWY_DYNAMIC_DISPATCH(sum_differences)(pairs, position.data(), velocity.data(), begin, end, out.data());
+}
+
+void sum_gradient_squares(const Pairs& pairs, std::span<const Vec4> position, std::size_t begin, std::size_t end,
+                          std::span<Vec4> out)
+{
+    HWY_DYNAMIC_DISPATCH(sum_gradient_squares)(pairs, position.data(), begin, end, out.data());
+}
+
+void fit_linear(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity, std::size_t begin,
+                std::size_t end, LinearFit* fits)
+{
+    HWY_DYNAMIC_DISPATCH(fit_linear)(pairs, position.data(), velocity.data(), begin, end, fits);
+}
+
+void sum_viscous_pulls(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+                       std::span<const Vec4> strain, const ViscousPull& pull, std::size_t begin, std::size_t end,
+                       std::span<Vec4> out)
+{
+    HWY_DYNAMIC_DISPATCH(sum_viscous_pulls)
+    (pairs, position.data(), velocity.data(), strain.data(), pull, begin, end, out.data());
+}
+
+} // namespace flotsam::simd
+#endif
