@@ -80,8 +80,8 @@ void Viscosity::add_between_particles(const ViscositySettings& settings, double 
     if (dissipates) find_strains(settings, fluid, pairs, workers);
     change_.resize(fluid.size());
     workers.for_chunks(fluid.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        simd::sum_viscous_pulls(pairs, dissipates ? position_ : fluid.position,
-                                       dissipates ? velocity_ : fluid.velocity, strain_, pull, begin, end, change_);
+        simd::sum_viscous_pulls(pairs, dissipates ? position_ : fluid.position, dissipates ? velocity_ : fluid.velocity,
+                                strain_, pull, begin, end, change_);
         for (std::size_t i = begin; i < end; ++i) velocity[i] += factor * change_[i];
     });
 }
