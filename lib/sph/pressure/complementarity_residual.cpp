@@ -1,8 +1,5 @@
 #include "sph/pressure/complementarity_solver.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace flotsam {
 
 double complementarity_residual(std::span<const Scalar> x, std::span<const Scalar> b, std::span<const Scalar> product,
@@ -10,8 +7,7 @@ double complementarity_residual(std::span<const Scalar> x, std::span<const Scala
 {
     if (x.empty()) return 0.0;
     const double sum = workers.ordered_sum<double>(x.size(), scratch, [&](std::size_t i) {
-        const double rest = static_cast<double>(b[i]) - static_cast<double>(product[i]);
-        return rest > 0.0 ? rest : std::min(-rest, static_cast<double>(x[i]) * static_cast<double>(diagonal[i]));
+        return residual_part(static_cast<double>(product[i]) - static_cast<double>(b[i]), x[i], diagonal[i]);
     });
     return sum / static_cast<double>(x.size());
 }

@@ -4,6 +4,7 @@
 #include "sph/pressure/largest_eigenvalue.hpp"
 #include "sph/pressure/pressure_system.hpp"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct SolveResult {
     double residual = 0.0; ///< in units of the goal's tolerance
     bool converged = false;
 };
+
+/// One particle's part of the residual below, g = A x - b.
+[[nodiscard]] inline double residual_part(double g, double x, double diagonal)
+{
+    return g < 0.0 ? -g : std::min(g, x * diagonal);
+}
 
 /// Mean of max(0, b - A x) where x = 0 and of min(|b - A x|, x diagonal) (|b - A x| where positive) where x > 0:
 /// counts what is compressed and what is pushed too hard alike.

@@ -41,8 +41,7 @@ SolveResult Mprgp::solve(PressureOperator& op, std::span<const Scalar> b, std::s
     const auto residual = [&] {
         const double sum = workers.ordered_sum<double>(n, sums_, [&](std::size_t i) {
             if (!(root_[i] > Scalar(0))) return 0.0;
-            const double rest = -static_cast<double>(gradient_[i]) / static_cast<double>(root_[i]);
-            return rest > 0.0 ? rest : std::min(-rest, static_cast<double>(x[i]) * static_cast<double>(diagonal[i]));
+            return residual_part(static_cast<double>(gradient_[i]) / static_cast<double>(root_[i]), x[i], diagonal[i]);
         });
         return n == 0 ? 0.0 : goal.scale * sum / static_cast<double>(n);
     };

@@ -28,9 +28,7 @@ SolveResult SpectralGradient::solve(PressureOperator& op, std::span<const Scalar
         return x[i] > Scalar(0) ? 1.0 : 0.0;
     });
     const auto residual_of = [&](std::size_t i) {
-        const double g = gradient_[i];
-        if (!(diagonal[i] > Scalar(0))) return 0.0;
-        return g < 0.0 ? -g : std::min(g, static_cast<double>(x[i]) * static_cast<double>(diagonal[i]));
+        return diagonal[i] > Scalar(0) ? residual_part(gradient_[i], x[i], diagonal[i]) : 0.0;
     };
     SolveResult result;
     if (pressed > 0.0) {

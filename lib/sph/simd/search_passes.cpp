@@ -50,7 +50,7 @@ inline void find_ranges(const CellGrid& grid, const CellLists& lists, int hx, in
     }
 }
 
-/// Calls visit(k, near, r^2) for each group of candidates of point i, k the first of it.
+/// Calls visit(indices, which are near, r^2) for each group of candidates of point i.
 template <class Visit>
 HWY_INLINE void for_candidates(const Search& search, std::size_t i, Ranges& ranges, Visit&& visit)
 {
