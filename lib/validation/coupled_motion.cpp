@@ -30,8 +30,9 @@ void release(const ReleasedBody& body, double resolution, const ValidationOption
     ValidationCurve theory{std::string(body.name) + ", theory", ValidationCurve::Kind::reference, {}, {}};
     for (const double ratio : kRatios) {
         TankScene tank{.dimensions = body.dimensions, .spacing = spacing};
-        tank.width = body.dimensions == 2 ? 12.0 * kRadius : 6.0 * kRadius; // 5 and 2 radii of water beside it
-        tank.depth = tank.level = tank.width;
+        tank.width = body.dimensions == 2 ? 20.0 * kRadius : 6.0 * kRadius; // 9 and 2 radii of water beside it
+        tank.depth = 6.0 * kRadius;
+        tank.level = body.dimensions == 2 ? 12.0 * kRadius : 6.0 * kRadius;
         tank.height = 1.3 * tank.level;
         tank.duration = 0.1;
         tank.frames_per_second = 500.0;
@@ -117,38 +118,55 @@ constexpr std::array<double, 14> kHeaveTime = {0.0, 0.5,  1.0, 1.5, 2.0,  2.5,  
 constexpr std::array<double, 14> kHeave = {1.0,    0.922,  0.704,  0.390, 0.042, -0.276, -0.510,
                                            -0.627, -0.639, -0.323, 0.298, 0.305, -0.180, -0.212};
 
+/// The disc let go from three heights, and the mean of what it does: the turn of a crest is flat, and one run's time of
+/// it is off by 3 % either way.
 void run_disc_heave(const ValidationOptions& options, ValidationResult& result)
 {
-    constexpr double kRadius = 0.1, kLift = 0.03;
+    constexpr double kRadius = 0.1;
+    constexpr std::array<double, 3> kLifts = {0.02, 0.025, 0.03};
     ValidationChart chart{"Heave of a half-submerged disc", "t sqrt(g / R)", "z / z0", {}, 0.08};
     for (const double resolution : options.quick ? std::vector{10.0} : std::vector{7.0, 10.0, 14.0}) {
-        TankScene tank{.dimensions = 2,
-                       .spacing = kRadius / resolution,
-                       .width = 3.0,
-                       .level = 0.6,
-                       .height = 1.0,
-                       .duration = 1.1,
-                       .frames_per_second = 100.0};
-        std::ostringstream text;
-        text << R"({"name": "disc", "shape": {"disc": 0.1}, "density": 500, "position": [1.5, )" << tank.level + kLift
-             << "]}";
-        tank.bodies = text.str();
-        const RecordedRun run = run_recorded(tank.text(), options);
-        ValidationCurve curve{"", ValidationCurve::Kind::measured, run.column("t"), run.column("disc.z")};
-        for (double& t : curve.x) t *= std::sqrt(kGravity / kRadius);
-        for (double& z : curve.y) z = (z - tank.level) / kLift;
+        ValidationCurve mean{"", ValidationCurve::Kind::measured, {}, {}};
+        double trough = 0.0, trough_time = 0.0, peak_time = 0.0, seconds = 0.0, wall_seconds = 0.0;
+        for (const double lift : kLifts) {
+            TankScene tank{.dimensions = 2,
+                           .spacing = kRadius / resolution,
+                           .width = 3.0,
+                           .level = 0.6,
+                           .height = 1.0,
+                           .duration = 1.1,
+                           .frames_per_second = 100.0};
+            std::ostringstream text;
+            text << R"({"name": "disc", "shape": {"disc": 0.1}, "density": 500, "position": [1.5, )"
+                 << tank.level + lift << "]}";
+            tank.bodies = text.str();
+            const RecordedRun run = run_recorded(tank.text(), options);
+            std::vector<double> t = run.column("t"), z = run.column("disc.z");
+            for (double& value : t) value *= std::sqrt(kGravity / kRadius);
+            for (double& value : z) value = (value - tank.level) / lift;
+            const std::vector<Extremum> turns = extrema(t, z, 7.0 / 12.0);
+            const double share = 1.0 / static_cast<double>(kLifts.size());
+            trough += turns.empty() ? NAN : share * turns[0].value;
+            trough_time += turns.empty() ? NAN : share * turns[0].time;
+            peak_time += turns.size() < 2 ? NAN : share * turns[1].time;
+            seconds += run.report.simulated_seconds;
+            wall_seconds += run.report.wall_seconds;
+            mean.x = t;
+            mean.y.resize(z.size(), 0.0);
+            for (std::size_t k = 0; k < z.size(); ++k) mean.y[k] += share * z[k];
+        }
         std::ostringstream label;
         label << "measured, R of " << resolution << " spacings";
-        curve.label = label.str();
-        const std::vector<Extremum> turns = extrema(curve.x, curve.y, 7.0 / 12.0);
+        mean.label = label.str();
         const auto check = [&](const char* quantity, double value, double reference, double tolerance) {
-            result.checks.push_back({quantity, "-", resolution, value, reference, tolerance, std::nullopt,
-                                     run.report.simulated_seconds, run.report.wall_seconds});
+            result.checks.push_back(
+                {quantity, "-", resolution, value, reference, tolerance, std::nullopt, seconds, wall_seconds});
         };
-        check("first trough z / z0", turns.empty() ? NAN : turns[0].value, -0.639, 0.08);
-        check("period t sqrt(g / R)", turns.size() < 2 ? NAN : 2.0 * (turns[1].time - turns[0].time), 7.0, 0.35);
-        check("z / z0 at t sqrt(g / R) = 1", interpolated(curve.x, curve.y, 1.0), 0.704, 0.08);
-        chart.curves.push_back(curve);
+        check("first trough z / z0", trough, -0.639, 0.08);
+        check("first trough, t sqrt(g / R)", trough_time, 3.72, 0.05 * 3.72);
+        check("next crest, t sqrt(g / R)", peak_time, 7.22, 0.05 * 7.22);
+        check("z / z0 at t sqrt(g / R) = 1", interpolated(mean.x, mean.y, 1.0), 0.704, 0.08);
+        chart.curves.push_back(mean);
     }
     chart.curves.push_back({"linear potential theory",
                             ValidationCurve::Kind::reference,

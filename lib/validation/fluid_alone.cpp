@@ -152,7 +152,7 @@ void run_standing_wave(const ValidationOptions& options, ValidationResult& resul
     const double exact = 2.0 * std::numbers::pi / std::sqrt(kGravity * kNumber * std::tanh(kNumber * kDepth));
     const double speed = kAmplitude * 2.0 * std::numbers::pi / exact;
     ValidationChart chart{"Standing wave: amplitude of its velocities", "periods", "amplitude / first", {}, 0.0};
-    for (const double resolution : options.quick ? std::vector{30.0} : std::vector{30.0, 50.0}) {
+    for (const double resolution : options.quick ? std::vector{60.0} : std::vector{30.0, 60.0, 80.0}) {
         const Stopwatch watch;
         const double spacing = kDepth / resolution, width = 0.5 * kWavelength;
         FluidWorld water(plane_settings(spacing, options));

@@ -24,6 +24,7 @@ const FluidWorldSettings& checked(const FluidWorldSettings& s)
     require(positive(s.rest_density), "rest_density must be > 0 [kg/m^3]", s.rest_density);
     require(s.kinematic_viscosity >= 0.0 && std::isfinite(s.kinematic_viscosity),
             "kinematic_viscosity must be >= 0 [m^2/s]", s.kinematic_viscosity);
+    require(s.packing_relief >= 0.0 && s.packing_relief <= 1.0, "packing_relief must lie in [0, 1]", s.packing_relief);
     require(s.dissipation >= 0.0 && std::isfinite(s.dissipation), "dissipation must be >= 0", s.dissipation);
     require(positive(s.max_time_step), "max_time_step must be > 0 [s]", s.max_time_step);
     require(s.cfl > 0.0 && s.cfl <= 1.0, "cfl must be in (0, 1]", s.cfl);

@@ -7,6 +7,7 @@
 #include "flotsam/sph/neighbourhood.hpp"
 #include "flotsam/world/fluid_world.hpp"
 #include "sph/contacts.hpp"
+#include "sph/forces/packing_stress.hpp"
 #include "sph/forces/viscosity.hpp"
 #include "sph/pressure/complementarity_solver.hpp"
 #include "sph/pressure/pressure_system.hpp"
@@ -111,9 +112,10 @@ struct FluidWorld::Impl {
     std::vector<Wrench> rubbed;  ///< viscous impulses of each owner [N s]
     std::vector<Wrench> total;   ///< of each owner over the last step [N s]
     std::vector<Wrench> offered; ///< total and pushed, while joints and contacts are asked about them [N s]
-    std::vector<Vec4> predicted, change, shift, new_velocity;
+    std::vector<Vec4> predicted;
+    std::vector<Vec4> change, shift, new_velocity; ///< the forces' scratch until they are written
     std::vector<Vec4> new_position; ///< between steps: where the particles were when the pairs were found
-    std::vector<Vec4> packed;       ///< of the pressure system
+    std::vector<Vec4> packed;       ///< of the pressure system, and the forces' scratch
     std::vector<Scalar> multiplier, shift_multiplier, source, diagonal, fluid_diagonal;
     std::vector<Eigen::Matrix<double, 6, 6>> mobility;
     std::vector<Vec4> sort_vec4;

@@ -148,10 +148,16 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
     workers.for_each(fluid.size(), [&](std::size_t i) { predicted[i] = fluid.velocity[i] + gravity_step; });
     report.gravity_impulse = settings.gravity * (dt * fluid.particle_mass * static_cast<double>(fluid.size()));
     total.assign(owners(), Wrench{});
+    const ForceScratch scratch{&change, &shift, &new_velocity, &packed};
     if (settings.kinematic_viscosity > 0.0 || settings.dissipation > 0.0) {
         const ViscositySettings viscous{settings.kinematic_viscosity, settings.dissipation, spacing(),
                                         settings.rest_density, settings.dimensions};
-        viscosity.add(viscous, dt, fluid, boundary, fluid_pairs, boundary_pairs, centers, workers, predicted, total);
+        viscosity.add(viscous, dt, fluid, boundary, fluid_pairs, boundary_pairs, centers, workers, scratch, predicted,
+                      total);
+    }
+    if (settings.packing_relief > 0.0) {
+        const PackingStressSettings packing{settings.packing_relief, settings.rest_density, settings.dimensions};
+        relieve_packing_stress(packing, dt, fluid, fluid_pairs, boundary_pairs, workers, scratch, predicted);
     }
     rubbed = total;
     predict_twists(port);

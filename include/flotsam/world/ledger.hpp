@@ -26,7 +26,7 @@ struct EnergyLedger {
     double gravity = 0.0;     ///< work on the fluid: from potential to kinetic
     ByCause<double> walls;    ///< given by the fluid; 0: they stand still
     ByCause<double> bodies;   ///< given by the fluid
-    double viscous = 0.0;     ///< lost to viscosity and dissipation
+    double viscous = 0.0;     ///< lost to viscosity and dissipation, less what packing_relief gives back
     double compression = 0.0; ///< lost by pressure against changes of density (a splash), which store nothing
     double guard = 0.0;       ///< lost as the guard stopped particles
     double shift = 0.0;       ///< potential energy gained by the position shift

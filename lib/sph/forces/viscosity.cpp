@@ -17,26 +17,12 @@ Scalar softening_sq(const ViscositySettings& settings)
     return static_cast<Scalar>(0.04 * settings.spacing * settings.spacing); // 0.01 h^2
 }
 
-} // namespace
-
-void Viscosity::add(const ViscositySettings& settings, double dt, const FluidState& fluid,
-                    const BoundaryState& boundary, const Pairs& fluid_pairs, const Pairs& boundary_pairs,
-                    std::span<const Vec3d> centers, const Workers& workers, std::span<Vec4> velocity,
-                    std::span<Wrench> owner_impulses)
-{
-    add_between_particles(settings, dt, fluid, fluid_pairs, workers, velocity);
-    if (settings.kinematic_viscosity > 0.0) {
-        add_at_boundaries(settings, dt, fluid, boundary, boundary_pairs, centers, workers, velocity, owner_impulses);
-    }
-}
-
-void Viscosity::find_strains(const ViscositySettings& settings, const FluidState& fluid, const Pairs& pairs,
-                             const Workers& workers)
+/// Copies of positions and velocities, with half of each particle's strain rate in their fourth components and in
+/// `strain` (ViscousPull says how).
+void find_strains(const ViscositySettings& settings, const FluidState& fluid, const Pairs& pairs,
+                  const Workers& workers, std::span<Vec4> position, std::span<Vec4> velocity, std::span<Vec4> strain)
 {
     const Scalar volume = static_cast<Scalar>(fluid.particle_mass / settings.rest_density);
-    position_.resize(fluid.size());
-    velocity_.resize(fluid.size());
-    strain_.resize(fluid.size());
     workers.for_chunks(fluid.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
         std::array<simd::LinearFit, Workers::kChunk> fits;
         simd::fit_linear(pairs, fluid.position, fluid.velocity, begin, end, fits.data());
@@ -55,18 +41,18 @@ void Viscosity::find_strains(const ViscositySettings& settings, const FluidState
                 slope = (slope * shape.inverse()).eval();
             else
                 slope.setZero();
-            position_[i] = fluid.position[i];
-            velocity_[i] = fluid.velocity[i];
-            position_[i][3] = slope(0, 0);
-            velocity_[i][3] = slope(1, 1);
-            strain_[i] << slope(2, 2), Scalar(0.5) * (slope(0, 1) + slope(1, 0)),
+            position[i] = fluid.position[i];
+            velocity[i] = fluid.velocity[i];
+            position[i][3] = slope(0, 0);
+            velocity[i][3] = slope(1, 1);
+            strain[i] << slope(2, 2), Scalar(0.5) * (slope(0, 1) + slope(1, 0)),
                 Scalar(0.5) * (slope(0, 2) + slope(2, 0)), Scalar(0.5) * (slope(1, 2) + slope(2, 1));
         }
     });
 }
 
-void Viscosity::add_between_particles(const ViscositySettings& settings, double dt, const FluidState& fluid,
-                                      const Pairs& pairs, const Workers& workers, std::span<Vec4> velocity)
+void add_between_particles(const ViscositySettings& settings, double dt, const FluidState& fluid, const Pairs& pairs,
+                           const Workers& workers, const ForceScratch& scratch, std::span<Vec4> velocity)
 {
     const Scalar factor =
         static_cast<Scalar>(2.0 * (settings.dimensions + 2) * dt * fluid.particle_mass / settings.rest_density);
@@ -77,13 +63,27 @@ void Viscosity::add_between_particles(const ViscositySettings& settings, double 
     // An explicit step is stable below about d^2 / (10 dt); half of it is kept.
     pull.most = static_cast<Scalar>(0.05 * settings.spacing * settings.spacing / dt);
     const bool dissipates = pull.width > Scalar(0);
-    if (dissipates) find_strains(settings, fluid, pairs, workers);
-    change_.resize(fluid.size());
+    for (std::vector<Vec4>* values : scratch) values->resize(fluid.size());
+    std::vector<Vec4>&at = *scratch[0], &fast = *scratch[1], &strain = *scratch[2], &change = *scratch[3];
+    if (dissipates) find_strains(settings, fluid, pairs, workers, at, fast, strain);
     workers.for_chunks(fluid.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        simd::sum_viscous_pulls(pairs, dissipates ? position_ : fluid.position, dissipates ? velocity_ : fluid.velocity,
-                                strain_, pull, begin, end, change_);
-        for (std::size_t i = begin; i < end; ++i) velocity[i] += factor * change_[i];
+        simd::sum_viscous_pulls(pairs, dissipates ? at : fluid.position, dissipates ? fast : fluid.velocity, strain,
+                                pull, begin, end, change);
+        for (std::size_t i = begin; i < end; ++i) velocity[i] += factor * change[i];
     });
+}
+
+} // namespace
+
+void Viscosity::add(const ViscositySettings& settings, double dt, const FluidState& fluid,
+                    const BoundaryState& boundary, const Pairs& fluid_pairs, const Pairs& boundary_pairs,
+                    std::span<const Vec3d> centers, const Workers& workers, const ForceScratch& scratch,
+                    std::span<Vec4> velocity, std::span<Wrench> owner_impulses)
+{
+    add_between_particles(settings, dt, fluid, fluid_pairs, workers, scratch, velocity);
+    if (settings.kinematic_viscosity > 0.0) {
+        add_at_boundaries(settings, dt, fluid, boundary, boundary_pairs, centers, workers, velocity, owner_impulses);
+    }
 }
 
 void Viscosity::add_at_boundaries(const ViscositySettings& settings, double dt, const FluidState& fluid,

@@ -3,6 +3,7 @@
 #include "flotsam/sph/boundary_state.hpp"
 #include "flotsam/sph/fluid_state.hpp"
 #include "flotsam/sph/neighbourhood.hpp"
+#include "sph/forces/force_scratch.hpp"
 
 #include <span>
 #include <vector>
@@ -37,24 +38,18 @@ class Viscosity {
     /// `centers` to `owner_impulses` [N s], [N m s].
     void add(const ViscositySettings& settings, double dt, const FluidState& fluid, const BoundaryState& boundary,
              const Pairs& fluid_pairs, const Pairs& boundary_pairs, std::span<const Vec3d> centers,
-             const Workers& workers, std::span<Vec4> velocity, std::span<Wrench> owner_impulses);
+             const Workers& workers, const ForceScratch& scratch, std::span<Vec4> velocity,
+             std::span<Wrench> owner_impulses);
 
   private:
     struct Reaction {
         std::int32_t owner;
         Wrench impulse;
     };
-    void find_strains(const ViscositySettings& settings, const FluidState& fluid, const Pairs& pairs,
-                      const Workers& workers);
-    void add_between_particles(const ViscositySettings& settings, double dt, const FluidState& fluid,
-                               const Pairs& pairs, const Workers& workers, std::span<Vec4> velocity);
     void add_at_boundaries(const ViscositySettings& settings, double dt, const FluidState& fluid,
                            const BoundaryState& boundary, const Pairs& pairs, std::span<const Vec3d> centers,
                            const Workers& workers, std::span<Vec4> velocity, std::span<Wrench> owner_impulses);
 
-    /// Of each particle, with half of its strain rate in the fourth components and in strain_ (ViscousPull says how).
-    std::vector<Vec4> position_, velocity_, strain_;
-    std::vector<Vec4> change_;
     std::vector<std::vector<Reaction>> reactions_; ///< per chunk
 };
 

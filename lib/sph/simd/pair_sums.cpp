@@ -123,6 +123,81 @@ void sum_viscous_pulls(const Pairs& pairs, const Vec4* position, const Vec4* vel
     }
 }
 
+void sum_virials(const Pairs& pairs, const Vec4* points, std::size_t begin, std::size_t end, std::array<Scalar, 6>* out)
+{
+    const V zero = hn::Zero(Floats());
+    for (std::size_t i = begin; i < end; ++i) {
+        const V4 own = broadcast(points[i]);
+        V3 straight{zero, zero, zero}, crossed = straight;
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
+            const V4 other = load_transposed(points, pairs.index.data() + k);
+            const V3 x = difference(own, other);
+            const V factor = hn::Mul(slope, hn::Add(own.w, other.w));
+            const V fx = hn::Mul(factor, x.x), fy = hn::Mul(factor, x.y);
+            straight = {hn::MulAdd(fx, x.x, straight.x), hn::MulAdd(fy, x.y, straight.y),
+                        hn::MulAdd(hn::Mul(factor, x.z), x.z, straight.z)};
+            crossed = {hn::MulAdd(fx, x.y, crossed.x), hn::MulAdd(fx, x.z, crossed.y), hn::MulAdd(fy, x.z, crossed.z)};
+        });
+        out[i - begin] = {sum_lanes(straight.x), sum_lanes(straight.y), sum_lanes(straight.z),
+                          sum_lanes(crossed.x),  sum_lanes(crossed.y),  sum_lanes(crossed.z)};
+    }
+}
+
+void smooth_deviators(const Pairs& pairs, const Vec4* at, const Vec4* rest, std::size_t begin, std::size_t end,
+                      Vec4* out_at, Vec4* out_rest)
+{
+    const V zero = hn::Zero(Floats());
+    for (std::size_t i = begin; i < end; ++i) {
+        const V4 own = broadcast(at[i]);
+        V weights = zero, xx = zero;
+        V4 sum{zero, zero, zero, zero};
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
+            const V4 other = load_transposed(at, pairs.index.data() + k);
+            const V4 tensor = load_transposed(rest, pairs.index.data() + k);
+            const V3 x = difference(own, other);
+            const V weight = hn::Mul(slope, dot(x, x));
+            weights = hn::Add(weights, weight);
+            xx = hn::MulAdd(weight, other.w, xx);
+            sum = {hn::MulAdd(weight, tensor.x, sum.x), hn::MulAdd(weight, tensor.y, sum.y),
+                   hn::MulAdd(weight, tensor.z, sum.z), hn::MulAdd(weight, tensor.w, sum.w)};
+        });
+        const float total = sum_lanes(weights), inverse = total < 0 ? 1 / total : 0;
+        float* c = reinterpret_cast<float*>(out_at + i);
+        const float* p = reinterpret_cast<const float*>(at + i);
+        c[0] = p[0], c[1] = p[1], c[2] = p[2];
+        c[3] = inverse * sum_lanes(xx);
+        c = reinterpret_cast<float*>(out_rest + i);
+        c[0] = inverse * sum_lanes(sum.x), c[1] = inverse * sum_lanes(sum.y);
+        c[2] = inverse * sum_lanes(sum.z), c[3] = inverse * sum_lanes(sum.w);
+    }
+}
+
+void sum_deviator_pushes(const Pairs& pairs, const Vec4* at, const Vec4* rest, std::size_t begin, std::size_t end,
+                         Vec4* out)
+{
+    const V zero = hn::Zero(Floats()), two = set(2), least = set(1e-30F);
+    for (std::size_t i = begin; i < end; ++i) {
+        const V4 own = broadcast(at[i]), own_t = broadcast(rest[i]);
+        V3 sum{zero, zero, zero};
+        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
+            const V4 other = load_transposed(at, pairs.index.data() + k);
+            const V4 other_t = load_transposed(rest, pairs.index.data() + k);
+            const V3 x = difference(own, other);
+            const V xx = hn::Add(own.w, other.w), yy = hn::Add(own_t.x, other_t.x);
+            const V xy = hn::Add(own_t.y, other_t.y), xz = hn::Add(own_t.z, other_t.z),
+                    yz = hn::Add(own_t.w, other_t.w);
+            const V crossed =
+                hn::MulAdd(hn::Mul(x.x, x.y), xy, hn::MulAdd(hn::Mul(x.x, x.z), xz, hn::Mul(hn::Mul(x.y, x.z), yz)));
+            const V3 squares{hn::Mul(x.x, x.x), hn::Mul(x.y, x.y), hn::Mul(x.z, x.z)};
+            const V along = hn::MulAdd(two, crossed, dot(squares, V3{xx, yy, hn::Neg(hn::Add(xx, yy))}));
+            const V distance_sq = hn::Max(hn::Add(squares.x, hn::Add(squares.y, squares.z)), least);
+            const V factor = hn::Mul(slope, hn::Div(along, distance_sq));
+            sum = {hn::MulAdd(factor, x.x, sum.x), hn::MulAdd(factor, x.y, sum.y), hn::MulAdd(factor, x.z, sum.z)};
+        });
+        store_vec3(sum, out + i);
+    }
+}
+
 } // namespace flotsam::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -134,6 +209,9 @@ HWY_EXPORT(sum_differences);
 HWY_EXPORT(sum_gradient_squares);
 HWY_EXPORT(fit_linear);
 HWY_EXPORT(sum_viscous_pulls);
+HWY_EXPORT(sum_virials);
+HWY_EXPORT(smooth_deviators);
+HWY_EXPORT(sum_deviator_pushes);
 
 void sum_gradients(const Pairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
                    std::span<Vec4> out)
@@ -165,6 +243,25 @@ void sum_viscous_pulls(const Pairs& pairs, std::span<const Vec4> position, std::
 {
     HWY_DYNAMIC_DISPATCH(sum_viscous_pulls)
     (pairs, position.data(), velocity.data(), strain.data(), pull, begin, end, out.data());
+}
+
+void sum_virials(const Pairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
+                 std::array<Scalar, 6>* out)
+{
+    HWY_DYNAMIC_DISPATCH(sum_virials)(pairs, at.data(), begin, end, out);
+}
+
+void smooth_deviators(const Pairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest, std::size_t begin,
+                      std::size_t end, std::span<Vec4> out_at, std::span<Vec4> out_rest)
+{
+    HWY_DYNAMIC_DISPATCH(smooth_deviators)
+    (pairs, at.data(), rest.data(), begin, end, out_at.data(), out_rest.data());
+}
+
+void sum_deviator_pushes(const Pairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest, std::size_t begin,
+                         std::size_t end, std::span<Vec4> out)
+{
+    HWY_DYNAMIC_DISPATCH(sum_deviator_pushes)(pairs, at.data(), rest.data(), begin, end, out.data());
 }
 
 } // namespace flotsam::simd

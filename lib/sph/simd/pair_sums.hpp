@@ -49,4 +49,17 @@ void sum_viscous_pulls(const Pairs& pairs, std::span<const Vec4> position, std::
                        std::span<const Vec4> strain, const ViscousPull& pull, std::size_t begin, std::size_t end,
                        std::span<Vec4> out);
 
+/// out_i = sum_j (w_i + w_j) grad W_ij x_ij^T, symmetric: xx, yy, zz, xy, xz, yz; `at`: x, y, z and w.
+void sum_virials(const Pairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
+                 std::array<Scalar, 6>* out);
+
+/// Symmetric tensors T without trace: xx stands in the fourth component of `at`, and rest holds yy, xy, xz, yz.
+/// out = sum_j w_ij T_j / sum_j w_ij, w_ij = -grad W_ij . x_ij, in the same form; 0 without neighbours.
+void smooth_deviators(const Pairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest, std::size_t begin,
+                      std::size_t end, std::span<Vec4> out_at, std::span<Vec4> out_rest);
+
+/// out_i = sum_j e^T (T_i + T_j) e grad W_ij, e = x_ij / |x_ij|, T as above; out.w = 0.
+void sum_deviator_pushes(const Pairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest, std::size_t begin,
+                         std::size_t end, std::span<Vec4> out);
+
 } // namespace flotsam::simd

@@ -3,6 +3,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 using namespace flotsam;
@@ -41,6 +42,16 @@ struct Points {
 Vec3d wide(const Vec4& p)
 {
     return p.head<3>().cast<double>();
+}
+
+/// Of xx in at.w and yy, xy, xz, yz in `rest`.
+Mat3 deviator(const Vec4& at, const Vec4& rest)
+{
+    const Eigen::Vector4d r = rest.cast<double>();
+    const double xx = static_cast<double>(at[3]);
+    Mat3 m;
+    m << xx, r[1], r[2], r[1], r[0], r[3], r[2], r[3], -xx - r[0];
+    return m;
 }
 
 void check_vec(const Vec3d& found, const Vec3d& expected, double size)
@@ -89,12 +100,19 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
         simd::sum_gradient_squares(pairs, points.position, 0, count, squares);
         simd::fit_linear(pairs, points.position, points.velocity, 0, count, fits.data());
         simd::sum_viscous_pulls(pairs, at, fast, points.strain, pull, 0, count, pulls);
+        std::vector<std::array<Scalar, 6>> virials(count);
+        std::vector<Vec4> smooth_at(count), smooth_rest(count), pushes(count);
+        simd::sum_virials(pairs, at, 0, count, virials.data());
+        simd::smooth_deviators(pairs, at, points.strain, 0, count, smooth_at, smooth_rest);
+        simd::sum_deviator_pushes(pairs, at, points.strain, 0, count, pushes);
         for (std::size_t i = 0; i < count; ++i) {
             std::vector<std::uint32_t> expected,
                 found(pairs.index.begin() + pairs.start[i], pairs.index.begin() + pairs.start[i + 1]);
             double kernel_sum = 0.0, difference = 0.0, square = 0.0, size = 0.0, pull_size = 0.0;
             Vec3d gradient = Vec3d::Zero(), plain = Vec3d::Zero(), pulled = Vec3d::Zero();
-            Mat3 velocity = Mat3::Zero(), shape = Mat3::Zero();
+            Mat3 velocity = Mat3::Zero(), shape = Mat3::Zero(), virial = Mat3::Zero(), weighted = Mat3::Zero();
+            double weights = 0.0;
+            Vec3d pushed = Vec3d::Zero();
             const auto strain_of = [&](std::size_t k) {
                 const Vec4& s = points.strain[k];
                 Mat3 m;
@@ -123,6 +141,11 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
                 const double strength = 0.01 * s + std::min(0.03, 0.02 * std::abs(q) / std::sqrt(distance_sq)) * q;
                 pulled += strength / distance_sq * g;
                 pull_size += std::abs(s) / distance_sq * g.norm();
+                virial += (static_cast<double>(at[i][3]) + static_cast<double>(at[j][3])) * g * x.transpose();
+                weights -= g.dot(x);
+                weighted -= g.dot(x) * deviator(at[j], points.strain[j]);
+                const Mat3 both = deviator(at[i], points.strain[i]) + deviator(at[j], points.strain[j]);
+                pushed += x.dot(both * x) / x.squaredNorm() * g;
             }
             std::sort(found.begin(), found.end());
             REQUIRE(found == expected);
@@ -142,7 +165,13 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
             for (std::size_t k = 0; k < 6; ++k) {
                 CHECK(std::abs(static_cast<double>(fits[i].shape[k]) - shape(places[k].first, places[k].second)) <=
                       1e-5 * size * Points::kSpacing);
+                CHECK(std::abs(static_cast<double>(virials[i][k]) - virial(places[k].first, places[k].second)) <=
+                      4e-5 * size * Points::kSpacing);
             }
+            check_vec(wide(pushes[i]), pushed, 30.0 * size);
+            CHECK(wide(smooth_at[i]) == wide(at[i]));
+            const Mat3 expected_mean = weights > 0.0 ? Mat3(weighted / weights) : Mat3::Zero();
+            CHECK((deviator(smooth_at[i], smooth_rest[i]) - expected_mean).norm() <= 1e-4);
         }
     }
 }

@@ -80,6 +80,9 @@ TEST_CASE("settings that cannot be used are refused by name", "[world]")
         refused([&](auto& s) { s.kinematic_viscosity = value; }, "kinematic_viscosity");
         refused([&](auto& s) { s.dissipation = value; }, "dissipation");
     }
+    for (const double value : {-0.01, 1.01, nan}) {
+        refused([&](auto& s) { s.packing_relief = value; }, "packing_relief must lie in [0, 1]");
+    }
     refused([&](auto& s) { s.cfl = 1.01; }, "cfl");
     refused([&](auto& s) { s.gravity.x() = nan; }, "gravity");
     refused([&](auto& s) { s.gravity.z() = infinite; }, "gravity");
@@ -97,6 +100,7 @@ TEST_CASE("no setting is without effect, but the number of threads", "[world][se
         {"rest_density", [](auto& s) { s.rest_density = 800.0; }},
         {"kinematic_viscosity", [](auto& s) { s.kinematic_viscosity = 1e-4; }},
         {"dissipation", [](auto& s) { s.dissipation = 0.5; }},
+        {"packing_relief", [](auto& s) { s.packing_relief = 0.5; }},
         {"max_time_step", [](auto& s) { s.max_time_step = 0.001; }},
         {"cfl", [](auto& s) { s.cfl = 0.3; }},
         {"solver", [](auto& s) { s.pressure.solver = PressureSettings::Solver::iisph; }},
