@@ -115,8 +115,8 @@ void FluidWorld::Impl::find_neighbours()
 void FluidWorld::Impl::sort_particles()
 {
     const std::span<const std::uint32_t> order = fluid_cells.order;
-    reorder(fluid.position, sort_vec4, order, workers);
-    reorder(fluid.velocity, sort_vec4, order, workers);
+    reorder(fluid.position, new_velocity, order, workers);
+    reorder(fluid.velocity, new_velocity, order, workers);
     reorder(fluid.pressure, sort_scalar, order, workers);
     reorder(fluid.id, sort_id, order, workers);
     for (std::size_t i = 0; i < fluid.size(); ++i) fluid_cells.order[i] = static_cast<std::uint32_t>(i);
