@@ -47,7 +47,7 @@ TEST_CASE("in 2-D a box and a disc float at the draft of Archimedes", "[validati
     const double ratio = GENERATE(0.25, 0.5, 0.75);
     const std::string shape = GENERATE(R"({"box": [0.24, 0.12]})", R"({"disc": 0.12})");
     CAPTURE(ratio, shape);
-    check_draft(float_body(2, shape, "", ratio, 6.0));
+    check_draft(float_body(2, shape, "", ratio, 10.0));
 }
 
 TEST_CASE("in 3-D a box floats at the draft of Archimedes", "[validation][draft]")
