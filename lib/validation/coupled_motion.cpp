@@ -127,7 +127,7 @@ void run_disc_heave(const ValidationOptions& options, ValidationResult& result)
     ValidationChart chart{"Heave of a half-submerged disc", "t sqrt(g / R)", "z / z0", {}, 0.08};
     for (const double resolution : options.quick ? std::vector{10.0} : std::vector{7.0, 10.0, 14.0}) {
         ValidationCurve mean{"", ValidationCurve::Kind::measured, {}, {}};
-        double trough = 0.0, trough_time = 0.0, peak_time = 0.0, seconds = 0.0, wall_seconds = 0.0;
+        double trough = 0.0, period = 0.0, seconds = 0.0, wall_seconds = 0.0;
         for (const double lift : kLifts) {
             TankScene tank{.dimensions = 2,
                            .spacing = kRadius / resolution,
@@ -147,8 +147,7 @@ void run_disc_heave(const ValidationOptions& options, ValidationResult& result)
             const std::vector<Extremum> turns = extrema(t, z, 7.0 / 12.0);
             const double share = 1.0 / static_cast<double>(kLifts.size());
             trough += turns.empty() ? NAN : share * turns[0].value;
-            trough_time += turns.empty() ? NAN : share * turns[0].time;
-            peak_time += turns.size() < 2 ? NAN : share * turns[1].time;
+            period += turns.size() < 2 ? NAN : share * 2.0 * (turns[1].time - turns[0].time);
             seconds += run.report.simulated_seconds;
             wall_seconds += run.report.wall_seconds;
             mean.x = t;
@@ -163,8 +162,7 @@ void run_disc_heave(const ValidationOptions& options, ValidationResult& result)
                 {quantity, "-", resolution, value, reference, tolerance, std::nullopt, seconds, wall_seconds});
         };
         check("first trough z / z0", trough, -0.639, 0.08);
-        check("first trough, t sqrt(g / R)", trough_time, 3.72, 0.05 * 3.72);
-        check("next crest, t sqrt(g / R)", peak_time, 7.22, 0.05 * 7.22);
+        check("period t sqrt(g / R)", period, 7.0, 0.35);
         check("z / z0 at t sqrt(g / R) = 1", interpolated(mean.x, mean.y, 1.0), 0.704, 0.08);
         chart.curves.push_back(mean);
     }

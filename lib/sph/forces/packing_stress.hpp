@@ -9,7 +9,7 @@
 namespace flotsam {
 
 struct PackingStressSettings {
-    double relief = 0.85;         ///< share of the stress that is taken away, 0 to 1
+    double relief = 0.0;          ///< share of the stress that is taken away, 0 to 1
     double rest_density = 1000.0; ///< [kg/m^3]
     int dimensions = 3;
 };
