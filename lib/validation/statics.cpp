@@ -206,7 +206,15 @@ void run_stability(const ValidationOptions& options, ValidationResult& result)
 
 // -- still water ------------------------------------------------------------------------------------------------------
 
-/// A tank that starts at rest; means over half a second.
+double mean_speed(const FluidState& fluid)
+{
+    double sum = 0.0;
+    for (const Vec4& v : fluid.velocity) sum += static_cast<double>(v.head<3>().norm());
+    return sum / static_cast<double>(fluid.size());
+}
+
+/// A tank that starts at rest; means over half a second, and the mean speed once more after ten: what drives a current
+/// in still water, however weak, shows late.
 void run_still_water(const ValidationOptions& options, ValidationResult& result)
 {
     const Stopwatch watch;
@@ -226,14 +234,20 @@ void run_still_water(const ValidationOptions& options, ValidationResult& result)
     double speed = 0.0, floor = 0.0, level = 0.0, seconds = 0.0;
     while (water.time() < kSeconds) {
         const StepReport step = water.step(water.allowed_time_step(), none);
-        double sum = 0.0;
-        for (const Vec4& v : water.fluid().velocity) sum += static_cast<double>(v.head<3>().norm());
-        speed += step.dt * sum / static_cast<double>(water.fluid().size());
+        speed += step.dt * mean_speed(water.fluid());
         floor -= step.dt * water.wall_force(0).z();
         level += step.dt * water.level_at(0.5 * edge, 0.5 * edge).value_or(NAN);
         for (std::size_t k = 0; k < depths.size(); ++k)
             pressure[k] += step.dt * water.pressure_at(Vec3d(0.0, 0.5 * edge, depth * (1.0 - depths[k])));
         seconds += step.dt;
+    }
+    constexpr double kLong = 10.0;
+    double late_speed = 0.0, late_seconds = 0.0;
+    while (water.time() < kLong) {
+        const StepReport step = water.step(water.allowed_time_step(), none);
+        if (water.time() < kLong - kSeconds) continue;
+        late_speed += step.dt * mean_speed(water.fluid());
+        late_seconds += step.dt;
     }
     const double wall = watch.seconds();
     const auto check = [&](const std::string& quantity, const char* unit, double value, double reference,
@@ -245,7 +259,9 @@ void run_still_water(const ValidationOptions& options, ValidationResult& result)
     const double weight = kWater * kGravity * edge * edge * depth;
     check("force on the floor / weight", "-", floor / weight, 1.0, 0.005);
     check("level", "m", level, depth, 0.3 * spacing);
-    check("mean speed / sqrt(g depth)", "-", speed / std::sqrt(kGravity * depth), 0.0, 0.002);
+    const double wave = std::sqrt(kGravity * depth);
+    check("mean speed / sqrt(g depth)", "-", speed / wave, 0.0, 0.002);
+    check("the same after 10 s", "-", late_speed * seconds / late_seconds / wave, 0.0, 0.002);
     for (std::size_t k = 0; k < depths.size(); ++k) {
         std::ostringstream quantity;
         quantity << "pressure at a wall, " << depths[k] << " of the depth";
@@ -255,7 +271,7 @@ void run_still_water(const ValidationOptions& options, ValidationResult& result)
 }
 
 constexpr std::array kCases = {
-    Case{"still_water", "statics", "Water at rest in a tank", 15.0, 40.0, run_still_water},
+    Case{"still_water", "statics", "Water at rest in a tank", 25.0, 40.0, run_still_water},
     Case{"drafts_2d", "statics", "Drafts of a box and a disc in two dimensions", 60.0, 500.0, run_drafts_2d},
     Case{"drafts_3d", "statics", "Drafts of a box, a sphere and a cylinder", 0.0, 1100.0, run_drafts_3d},
     Case{"square_log", "statics", "The angle at which a square log floats", 40.0, 200.0, run_square_log},

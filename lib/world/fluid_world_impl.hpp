@@ -99,6 +99,7 @@ struct FluidWorld::Impl {
     ContactBuilder contact_builder;
     Contacts contacts;
     Viscosity viscosity;
+    PackingStress packing_stress;
     RelaxedJacobi relaxed_jacobi;
     Mprgp mprgp;
     SpectralGradient spectral_gradient;

@@ -157,7 +157,7 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
     }
     if (settings.packing_relief > 0.0) {
         const PackingStressSettings packing{settings.packing_relief, settings.rest_density, settings.dimensions};
-        relieve_packing_stress(packing, dt, fluid, fluid_pairs, boundary_pairs, workers, scratch, predicted);
+        packing_stress.relieve(packing, dt, fluid, fluid_pairs, boundary_pairs, workers, scratch, predicted);
     }
     rubbed = total;
     predict_twists(port);

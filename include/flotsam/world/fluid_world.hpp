@@ -28,7 +28,7 @@ struct FluidWorldSettings {
     double rest_density = 1000.0;           ///< [kg/m^3], > 0
     double kinematic_viscosity = 1e-6;      ///< [m^2/s], >= 0
     double dissipation = 2.0;               ///< of velocity noise below the resolution, x d |dv|; 0: none, >= 0
-    double packing_relief = 0.85;           ///< share of the packing's anisotropic stress taken away, in [0, 1]
+    double packing_relief = 0.75;           ///< share of the packing's anisotropic stress taken away, in [0, 1]
     KernelKind kernel = KernelKind::quintic;
     PressureSettings pressure{};
     double max_time_step = 0.004; ///< [s], > 0

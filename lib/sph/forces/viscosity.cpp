@@ -1,8 +1,7 @@
 #include "sph/forces/viscosity.hpp"
 
+#include "sph/forces/velocity_gradient.hpp"
 #include "sph/simd/pair_sums.hpp"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -27,26 +26,13 @@ void find_strains(const ViscositySettings& settings, const FluidState& fluid, co
         std::array<simd::LinearFit, Workers::kChunk> fits;
         simd::fit_linear(pairs, fluid.position, fluid.velocity, begin, end, fits.data());
         for (std::size_t i = begin; i < end; ++i) {
-            const simd::LinearFit& fit = fits[i - begin];
-            const auto& s = fit.shape;
-            Mat3 shape, slope;
-            shape << s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2];
-            for (int k = 0; k < 9; ++k)
-                slope(k / 3, k % 3) = Scalar(0.5) * volume * fit.velocity[static_cast<std::size_t>(k)];
-            shape *= volume;
-            if (settings.dimensions == 2) shape(1, 1) = 1;
-            // The shape is the identity in a full neighbourhood; where it is nearly singular (spray) there is no linear
-            // field.
-            if (shape.determinant() > Scalar(0.05))
-                slope = (slope * shape.inverse()).eval();
-            else
-                slope.setZero();
+            const Mat3 half = Scalar(0.5) * velocity_gradient(fits[i - begin], volume, settings.dimensions);
             position[i] = fluid.position[i];
             velocity[i] = fluid.velocity[i];
-            position[i][3] = slope(0, 0);
-            velocity[i][3] = slope(1, 1);
-            strain[i] << slope(2, 2), Scalar(0.5) * (slope(0, 1) + slope(1, 0)),
-                Scalar(0.5) * (slope(0, 2) + slope(2, 0)), Scalar(0.5) * (slope(1, 2) + slope(2, 1));
+            position[i][3] = half(0, 0);
+            velocity[i][3] = half(1, 1);
+            strain[i] << half(2, 2), Scalar(0.5) * (half(0, 1) + half(1, 0)), Scalar(0.5) * (half(0, 2) + half(2, 0)),
+                Scalar(0.5) * (half(1, 2) + half(2, 1));
         }
     });
 }

@@ -53,7 +53,8 @@ struct Block {
     {
         std::vector<Vec4> a, b, c, d;
         change.assign(size(), Vec4::Zero());
-        relieve_packing_stress({1.0, kWater, dimensions}, dt, fluid, pairs, none, Workers(2), {&a, &b, &c, &d}, change);
+        PackingStress().relieve({1.0, kWater, dimensions}, dt, fluid, pairs, none, Workers(2), {&a, &b, &c, &d},
+                                change);
     }
     /// Acceleration of the pressure forces alone.
     [[nodiscard]] Vec3d pressure_push(std::size_t i) const
