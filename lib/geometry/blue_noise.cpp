@@ -23,15 +23,15 @@ class CrowdHeap {
     explicit CrowdHeap(std::vector<double> weights)
         : weights_(std::move(weights)), heap_(weights_.size()), place_(weights_.size())
     {
-        std::iota(heap_.begin(), heap_.end(), std::size_t{0});
-        std::sort(heap_.begin(), heap_.end(), [&](std::size_t i, std::size_t j) { return before(i, j); });
-        for (std::size_t k = 0; k < heap_.size(); ++k) place_[heap_[k]] = k;
+        std::iota(heap_.begin(), heap_.end(), std::uint32_t{0});
+        std::sort(heap_.begin(), heap_.end(), [&](std::uint32_t i, std::uint32_t j) { return before(i, j); });
+        for (std::size_t k = 0; k < heap_.size(); ++k) place_[heap_[k]] = static_cast<std::uint32_t>(k);
     }
-    std::size_t pop()
+    std::uint32_t pop()
     {
-        const std::size_t top = heap_.front();
+        const std::uint32_t top = heap_.front();
         place_[top] = kGone;
-        const std::size_t last = heap_.back();
+        const std::uint32_t last = heap_.back();
         heap_.pop_back();
         if (!heap_.empty()) {
             put(last, 0);
@@ -39,7 +39,7 @@ class CrowdHeap {
         }
         return top;
     }
-    void lighten(std::size_t i, double by)
+    void lighten(std::uint32_t i, double by)
     {
         if (place_[i] == kGone) return;
         weights_[i] -= by;
@@ -47,27 +47,27 @@ class CrowdHeap {
     }
     [[nodiscard]] std::vector<std::size_t> rest() const
     {
-        std::vector<std::size_t> sorted = heap_;
+        std::vector<std::size_t> sorted(heap_.begin(), heap_.end());
         std::sort(sorted.begin(), sorted.end());
         return sorted;
     }
     [[nodiscard]] std::size_t size() const { return heap_.size(); }
 
   private:
-    static constexpr std::size_t kGone = static_cast<std::size_t>(-1);
+    static constexpr std::uint32_t kGone = static_cast<std::uint32_t>(-1);
 
-    [[nodiscard]] bool before(std::size_t i, std::size_t j) const
+    [[nodiscard]] bool before(std::uint32_t i, std::uint32_t j) const
     {
         return weights_[i] != weights_[j] ? weights_[i] > weights_[j] : i < j;
     }
-    void put(std::size_t i, std::size_t k)
+    void put(std::uint32_t i, std::size_t k)
     {
         heap_[k] = i;
-        place_[i] = k;
+        place_[i] = static_cast<std::uint32_t>(k);
     }
     void sink(std::size_t k)
     {
-        const std::size_t i = heap_[k];
+        const std::uint32_t i = heap_[k];
         for (;;) {
             std::size_t child = 2 * k + 1;
             if (child >= heap_.size()) break;
@@ -80,7 +80,7 @@ class CrowdHeap {
     }
 
     std::vector<double> weights_;
-    std::vector<std::size_t> heap_, place_;
+    std::vector<std::uint32_t> heap_, place_;
 };
 
 } // namespace
@@ -88,27 +88,29 @@ class CrowdHeap {
 std::vector<std::size_t> eliminate_crowded(std::span<const Vec3d> points, std::size_t fixed, std::size_t count,
                                            double reach, const Workers& workers)
 {
-    const PointGrid grid(points, reach);
     std::vector<double> weights(points.size(), 0.0);
     // Who is near point i: count_near[i] of near[its chunk], from first[i] on.
     std::vector<std::vector<std::uint32_t>> near(Workers::chunk_count(points.size()));
     std::vector<std::uint32_t> first(points.size()), count_near(points.size());
-    workers.for_chunks(points.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            first[i] = static_cast<std::uint32_t>(near[chunk].size());
-            grid.for_near(points[i], reach, [&](std::size_t j, double distance_sq) {
-                if (j == i) return;
-                near[chunk].push_back(static_cast<std::uint32_t>(j));
-                weights[i] += crowding(distance_sq, reach);
-            });
-            count_near[i] = static_cast<std::uint32_t>(near[chunk].size()) - first[i];
-        }
-        near[chunk].shrink_to_fit();
-    });
+    {
+        const PointGrid grid(points, reach);
+        workers.for_chunks(points.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                first[i] = static_cast<std::uint32_t>(near[chunk].size());
+                grid.for_near(points[i], reach, [&](std::size_t j, double distance_sq) {
+                    if (j == i) return;
+                    near[chunk].push_back(static_cast<std::uint32_t>(j));
+                    weights[i] += crowding(distance_sq, reach);
+                });
+                count_near[i] = static_cast<std::uint32_t>(near[chunk].size()) - first[i];
+            }
+            near[chunk].shrink_to_fit();
+        });
+    }
     for (std::size_t i = 0; i < fixed; ++i) weights[i] = -std::numeric_limits<double>::infinity();
     CrowdHeap heap(std::move(weights));
     while (heap.size() > std::max(count, fixed)) {
-        const std::size_t gone = heap.pop();
+        const std::uint32_t gone = heap.pop();
         const std::uint32_t* others = near[gone / Workers::kChunk].data() + first[gone];
         for (std::uint32_t k = 0; k < count_near[gone]; ++k)
             heap.lighten(others[k], crowding((points[others[k]] - points[gone]).squaredNorm(), reach));

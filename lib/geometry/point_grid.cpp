@@ -8,12 +8,13 @@ PointGrid::PointGrid(std::span<const Vec3d> points, double cell)
     : inv_cell_(1.0 / cell), mask_(std::bit_ceil(points.size() + 1) * 2 - 1), starts_(mask_ + 2, 0),
       entries_(points.size())
 {
-    for (const Vec3d& p : points) ++starts_[bucket_of(key_of(cell_of(p))) + 1];
+    const auto bucket = [&](const Vec3d& p) { return bucket_of(key_of(cell_of(p))); };
+    for (const Vec3d& p : points) ++starts_[bucket(p)];
     for (std::size_t k = 1; k < starts_.size(); ++k) starts_[k] += starts_[k - 1];
-    std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    // Each bucket from its end, so that its points stand in the order of their indices.
+    for (std::size_t i = points.size(); i-- > 0;) {
         const std::uint64_t key = key_of(cell_of(points[i]));
-        entries_[next[bucket_of(key)]++] = {points[i], key, i};
+        entries_[--starts_[bucket_of(key)]] = {points[i], key, static_cast<std::uint32_t>(i)};
     }
 }
 

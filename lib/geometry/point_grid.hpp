@@ -43,7 +43,7 @@ class PointGrid {
     struct Entry {
         Vec3d point;
         std::uint64_t key;
-        std::size_t index;
+        std::uint32_t index;
     };
 
     [[nodiscard]] Cell cell_of(const Vec3d& p) const
@@ -75,7 +75,7 @@ class PointGrid {
 
     double inv_cell_;
     std::uint64_t mask_;
-    std::vector<std::size_t> starts_;
+    std::vector<std::uint32_t> starts_;
     std::vector<Entry> entries_;
 };
 

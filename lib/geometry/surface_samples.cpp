@@ -120,11 +120,13 @@ void choose_samples(std::vector<OffsetPoint>& samples, const SampleCandidates& c
                     const OffsetSurface& offset, double spacing, const Workers& workers)
 {
     const std::size_t fixed = samples.size();
-    samples.insert(samples.end(), candidates.points.begin(), candidates.points.end());
-    std::vector<OffsetPoint> chosen;
-    for (std::size_t i : eliminate_crowded(positions_of(samples), fixed, count, kHexagonal * spacing, workers))
-        chosen.push_back(samples[i]);
-    samples = std::move(chosen);
+    {
+        std::vector<Vec3d> positions = positions_of(samples);
+        positions.reserve(fixed + candidates.points.size());
+        for (const OffsetPoint& candidate : candidates.points) positions.push_back(candidate.position);
+        for (std::size_t i : eliminate_crowded(positions, fixed, count, kHexagonal * spacing, workers))
+            if (i >= fixed) samples.push_back(candidates.points[i - fixed]); // the fixed ones always stay
+    }
     std::vector<Vec3d> drift;
     for (int step = 0; step < kSteps; ++step) repel(samples, drift, fixed, offset, spacing, workers);
     for (int round = 0; round < 3; ++round) {
