@@ -212,6 +212,7 @@ struct FluidWorld::Impl {
     [[nodiscard]] SolveResult solve_shift(const PressureSystem& system);
     [[nodiscard]] double mean_length(std::span<const Vec4> vectors);
     [[nodiscard]] double part_of_cold_residual(double scale);
+    [[nodiscard]] double velocity_tolerance(double dt);
     [[nodiscard]] bool shift_if_possible(const PressureSystem& system, StepReport& report);
     void advance(double dt, Bodies& port, StepReport& report);
     void guard_walls(double dt, Bodies& port, StepReport& report);

@@ -133,6 +133,17 @@ double FluidWorld::Impl::part_of_cold_residual(double scale)
     return std::max(kLeast, kPart * scale * sum / static_cast<double>(source.size()));
 }
 
+/// Errors of a solve are kicks, and dissipation is in proportion to the noise that they make: in water that is nearly
+/// still (1 cm/s at 2 cm and 4 ms) they would keep a noise of their own alive. 2-D, 25 layers: mean speed after 20 s
+/// 0.36 % of sqrt(g depth), and not sinking, at 1.5e-5 throughout; 0.37 at 5e-6, 0.11 and sinking at 3e-6.
+double FluidWorld::Impl::velocity_tolerance(double dt)
+{
+    constexpr double kPart = 0.005, kLeast = 0.05; // of what the water moves in a step; of the setting
+    const double most = settings.pressure.velocity_tolerance;
+    if (fluid.size() == 0) return most;
+    return std::clamp(kPart * mean_length(fluid.velocity) * dt / spacing(), kLeast * most, most);
+}
+
 void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& report)
 {
     constexpr int kMostRounds = 6; // of the solve, until joints and contacts hold and yield as it has them
@@ -199,7 +210,7 @@ void FluidWorld::Impl::solve_velocities(const PressureSystem& system, double dt,
     SolveGoal goal;
     goal.scale = dt / rho0;
     goal.tolerance =
-        published ? pressure.tolerance : std::min(pressure.velocity_tolerance, part_of_cold_residual(goal.scale));
+        published ? pressure.tolerance : std::min(velocity_tolerance(dt), part_of_cold_residual(goal.scale));
     goal.max_iterations = pressure.max_iterations;
     const SolveResult result = solver().solve(pressure_operator, source, diagonal, goal, multiplier);
     report.iterations += result.iterations;

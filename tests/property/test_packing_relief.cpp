@@ -67,7 +67,8 @@ TEST_CASE("a vortex under pressure keeps its speed, for the packing's stress is 
 
 TEST_CASE("taking the packing's stress away does not stir still water", "[property]")
 {
-    const Motion with = after_a_second(0.0, 1.0), without = after_a_second(0.0, 0.0);
+    // As much as is taken by default; later: "water comes to rest and stays there".
+    const Motion with = after_a_second(0.0, FluidWorldSettings().packing_relief), without = after_a_second(0.0, 0.0);
     CAPTURE(with.rms, without.rms);
-    CHECK(with.rms < 1.35 * without.rms); // of the lattice of the start, which falls into a packing
+    CHECK(with.rms < 1.2 * without.rms); // of the lattice of the start, which falls into a packing
 }
