@@ -1,6 +1,6 @@
 // Whole scenes, those of data/bench: time a step with its spread, shares of the stages, iterations, real-time factor
-// and memory, on one thread and two, with the best instruction set and in scalar code; and what the machine gives at
-// most, timed in the same run. About a quarter of an hour. `bench_scenes [SCENE.json ...]` takes other scenes.
+// and memory, on one thread and two, with the best instruction set and in scalar code; and what its memory gives at
+// most, timed in the same run. Half an hour and more. `bench_scenes [SCENE.json ...]` takes other scenes.
 // data/bench/results.md is its output.
 #include "flotsam/scene/scene_file.hpp"
 #include "flotsam/sph/neighbourhood.hpp"

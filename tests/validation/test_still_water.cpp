@@ -23,6 +23,13 @@ class HeldBody final : public Bodies {
     BodyState state_;
 };
 
+double mean_speed(const FluidState& fluid)
+{
+    double sum = 0.0;
+    for (const Vec4& v : fluid.velocity) sum += static_cast<double>(v.norm());
+    return sum / static_cast<double>(fluid.size());
+}
+
 } // namespace
 
 TEST_CASE("a still tank: pressure, force, level, rest", "[validation][still]")
@@ -46,9 +53,8 @@ TEST_CASE("a still tank: pressure, force, level, rest", "[validation][still]")
         seconds += dt;
         force -= dt * world.wall_force(0).z();
         compression += dt * report.compression_mean;
-        double mean = 0.0, floor = 0.0, height = 0.0;
-        for (const Vec4& v : world.fluid().velocity) mean += static_cast<double>(v.norm());
-        speed += dt * mean / static_cast<double>(world.fluid().size());
+        double floor = 0.0, height = 0.0;
+        speed += dt * mean_speed(world.fluid());
         for (int k = 1; k < 8; ++k) {
             const Vec3d at(size.x() * k / 8.0, dimensions == 2 ? 0.0 : size.y() * (k % 4 + 0.5) / 4.0, 0.0);
             floor += world.pressure_at(at) / 7.0;
@@ -81,9 +87,7 @@ TEST_CASE("water comes to rest and stays there", "[validation][still]")
     NoBodies none;
     const auto run_until = [&](double end) {
         while (world.time() < end) world.step(world.allowed_time_step(), none);
-        double sum = 0.0;
-        for (const Vec4& v : world.fluid().velocity) sum += static_cast<double>(v.head<3>().norm());
-        return sum / static_cast<double>(world.fluid().size()) / std::sqrt(9.81 * kDepth);
+        return mean_speed(world.fluid()) / std::sqrt(9.81 * kDepth);
     };
     const double early = run_until(6.0), late = run_until(18.0);
     CAPTURE(early, late);
