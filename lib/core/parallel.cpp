@@ -72,15 +72,19 @@ int Workers::threads() const
     return arena_->threads;
 }
 
-void Workers::for_chunks(std::size_t items, FunctionRef<void(std::size_t, std::size_t, std::size_t)> body) const
+void Workers::for_tasks(std::size_t count, FunctionRef<void(std::size_t)> body) const
 {
-    const std::size_t chunks = chunk_count(items);
-    const auto run = [&](std::size_t chunk) { body(chunk, chunk * kChunk, std::min(items, (chunk + 1) * kChunk)); };
-    if (arena_->threads == 1 || chunks < 2) {
-        for (std::size_t chunk = 0; chunk < chunks; ++chunk) run(chunk);
+    if (arena_->threads == 1 || count < 2) {
+        for (std::size_t task = 0; task < count; ++task) body(task);
         return;
     }
-    arena_->team.run(chunks, run);
+    arena_->team.run(count, body);
+}
+
+void Workers::for_chunks(std::size_t items, FunctionRef<void(std::size_t, std::size_t, std::size_t)> body) const
+{
+    for_tasks(chunk_count(items),
+              [&](std::size_t chunk) { body(chunk, chunk * kChunk, std::min(items, (chunk + 1) * kChunk)); });
 }
 
 } // namespace flotsam

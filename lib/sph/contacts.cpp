@@ -11,14 +11,12 @@ void ContactBuilder::build(const Pairs& boundary_pairs, std::span<const Vec4> po
     const std::size_t count = boundary_pairs.rows();
     const std::size_t chunks = Workers::chunk_count(count);
     rows_.resize(std::max(rows_.size(), chunks));
-    contacts.gradient.resize(count);
     workers.for_chunks(count, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         std::vector<Row>& rows = rows_[chunk];
         rows.clear();
         if (rows.capacity() == 0) rows.reserve(2 * Workers::kChunk); // two owners for each particle
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t first = rows.size();
-            Vec4 sum = Vec4::Zero();
             for (std::uint32_t k = boundary_pairs.start[i]; k < boundary_pairs.start[i + 1]; ++k) {
                 const std::uint32_t b = boundary_pairs.index[k];
                 const std::int32_t owner = boundary.owner[b];
@@ -34,9 +32,7 @@ void ContactBuilder::build(const Pairs& boundary_pairs, std::span<const Vec4> po
                 }
                 row->row.head<3>() += weight;
                 row->row.tail<3>() += arm.cross(weight);
-                sum.head<3>() += weight;
             }
-            contacts.gradient[i] = sum;
         }
     });
     // Counting sort by owner; chunks come in order, so particles rise within an owner.

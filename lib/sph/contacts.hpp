@@ -23,7 +23,6 @@ struct Contacts {
     std::vector<std::uint32_t> start;    ///< owners + 1
     std::vector<std::uint32_t> particle; ///< of each row
     std::vector<Vec6> row;               ///< [kg/m^4], [kg/m^3]
-    std::vector<Vec4> gradient;          ///< per fluid particle: sum of the linear parts over all owners, w = 0
 
     [[nodiscard]] std::size_t owners() const { return start.empty() ? 0 : start.size() - 1; }
 };

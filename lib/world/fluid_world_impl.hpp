@@ -115,8 +115,8 @@ struct FluidWorld::Impl {
     std::vector<Wrench> offered; ///< total and pushed, while joints and contacts are asked about them [N s]
     std::vector<Vec4> predicted;
     std::vector<Vec4> change, shift, new_velocity; ///< scratch of sorting and of the forces until they are written
-    std::vector<Vec4> new_position; ///< between steps: where the particles were when the pairs were found
-    std::vector<Vec4> packed;       ///< of the pressure system, and the forces' scratch
+    std::vector<Vec4> new_position;           ///< between steps: where the particles were when the pairs were found
+    PressureSystem::Scratch pressure_scratch; ///< its unknowns are the forces' scratch before
     std::vector<Scalar> multiplier, shift_multiplier, source, diagonal, fluid_diagonal;
     std::vector<Eigen::Matrix<double, 6, 6>> mobility;
     std::vector<Scalar> sort_scalar;

@@ -58,7 +58,7 @@ double FluidWorld::Impl::mean_length(std::span<const Vec4> vectors)
 /// The system of the pairs and contacts as they are, with fluid_diagonal.
 PressureSystem FluidWorld::Impl::pressure_system()
 {
-    const PressureSystem system(fluid_pairs, fluid.position, contacts, fluid.particle_mass, workers, packed);
+    const PressureSystem system(fluid_pairs, fluid.position, contacts, fluid.particle_mass, workers, pressure_scratch);
     fluid_diagonal.resize(fluid.size());
     system.fluid_diagonal(fluid_diagonal);
     return system;

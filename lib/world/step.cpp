@@ -148,7 +148,7 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
     workers.for_each(fluid.size(), [&](std::size_t i) { predicted[i] = fluid.velocity[i] + gravity_step; });
     report.gravity_impulse = settings.gravity * (dt * fluid.particle_mass * static_cast<double>(fluid.size()));
     total.assign(owners(), Wrench{});
-    const ForceScratch scratch{&change, &shift, &new_velocity, &packed};
+    const ForceScratch scratch{&change, &shift, &new_velocity, &pressure_scratch.unknowns};
     if (settings.kinematic_viscosity > 0.0 || settings.dissipation > 0.0) {
         const ViscositySettings viscous{settings.kinematic_viscosity, settings.dissipation, spacing(),
                                         settings.rest_density, settings.dimensions};

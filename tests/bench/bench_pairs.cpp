@@ -102,11 +102,12 @@ int main(int argc, char** argv)
     add("sum_gradients", 40, [](Water& w) {
         in_chunks(w, [&](auto begin, auto end) { simd::sum_gradients(w.pairs, w.at, begin, end, w.strain); });
     });
-    add("sum_differences", 40, [](Water& w) {
+    add("sum_divergences", 40, [](Water& w) {
         static std::vector<Scalar> out;
         out.resize(w.position.size());
-        in_chunks(
-            w, [&](auto begin, auto end) { simd::sum_differences(w.pairs, w.position, w.velocity, begin, end, out); });
+        in_chunks(w, [&](auto begin, auto end) {
+            simd::sum_divergences(w.pairs, w.position, w.velocity, begin, end, std::span(out).subspan(begin));
+        });
     });
     add("fit_linear", 40, [](Water& w) {
         in_chunks(w, [&](auto begin, auto end) {

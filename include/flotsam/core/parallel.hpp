@@ -16,7 +16,7 @@ template <class Result, class... Args>
 class FunctionRef<Result(Args...)> {
   public:
     template <class F>
-    requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>)
+    requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> && std::is_invocable_r_v<Result, F&, Args...>)
         FunctionRef(F&& callable) // NOLINT(google-explicit-constructor): taken as an argument only
         : object_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))),
           call_([](void* object, Args... args) -> Result {
@@ -50,6 +50,9 @@ class Workers {
     static constexpr std::size_t kChunk = 256; ///< items a chunk
 
     [[nodiscard]] static std::size_t chunk_count(std::size_t items) { return (items + kChunk - 1) / kChunk; }
+
+    /// Calls body(task) for each of [0, count), in parallel; for tasks of some microseconds at least.
+    void for_tasks(std::size_t count, FunctionRef<void(std::size_t)> body) const;
 
     /// Calls body(chunk, begin, end) for each chunk of [0, items), in parallel.
     void for_chunks(std::size_t items, FunctionRef<void(std::size_t, std::size_t, std::size_t)> body) const;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace flotsam {
@@ -26,9 +27,10 @@ struct SolveResult {
 };
 
 /// One particle's part of the residual below, g = A x - b.
-[[nodiscard]] inline double residual_part(double g, double x, double diagonal)
+template <class Real>
+[[nodiscard]] Real residual_part(Real g, std::type_identity_t<Real> x, std::type_identity_t<Real> diagonal)
 {
-    return g < 0.0 ? -g : std::min(g, x * diagonal);
+    return g < Real(0) ? -g : std::min(g, x * diagonal);
 }
 
 /// Mean of max(0, b - A x) where x = 0 and of min(|b - A x|, x diagonal) (|b - A x| where positive) where x > 0:
@@ -105,7 +107,7 @@ class SpectralGradient final : public ComplementaritySolver {
     };
     LargestEigenvalue largest_eigenvalue_;
     double largest_curvature_ = 0.0; ///< of D^-1 A, met lately; 0: none yet
-    std::vector<Scalar> gradient_, step_, product_;
+    std::vector<Scalar> gradient_;
     std::vector<double> pressed_;
     std::vector<Sums> sums_;
     Mprgp fallback_;

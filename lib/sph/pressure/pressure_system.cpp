@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 
 namespace flotsam {
 
@@ -15,28 +16,73 @@ Eigen::Matrix<double, 6, 6> transposed_root(const Eigen::Matrix<double, 6, 6>& m
     return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+PressureSystem::PressureSystem(const Pairs& pairs, std::span<const Vec4> position, const Contacts& contacts,
+                               double particle_mass, const Workers& workers, Scratch& scratch)
+    : pairs_(&pairs), contacts_(&contacts), mass_(static_cast<Scalar>(particle_mass)), workers_(&workers),
+      scratch_(&scratch)
+{
+    constexpr std::uint32_t kSlice = 1024; // rows
+    std::vector<Vec4>&unknowns = scratch.unknowns, &own = scratch.own_gradient;
+    unknowns.assign(position.begin(), position.end());
+    own.resize(size());
+    const Vec4 factor(mass_, mass_, mass_, mass_ * mass_);
+    workers.for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        simd::sum_gradient_squares(pairs, unknowns, begin, end, own);
+        for (std::size_t i = begin; i < end; ++i) own[i] = factor.cwiseProduct(own[i]);
+    });
+    const std::size_t most_slices = contacts.owners() + contacts.row.size() / kSlice;
+    if (scratch.slices.capacity() < most_slices) {
+        scratch.slices.reserve(2 * most_slices); // contacts come and go
+        scratch.sums.reserve(2 * most_slices);
+    }
+    scratch.slices.clear();
+    for (std::size_t owner = 0; owner < contacts.owners(); ++owner) {
+        const std::uint32_t first = contacts.start[owner], last = contacts.start[owner + 1];
+        workers.for_each(last - first, [&](std::size_t k) {
+            own[contacts.particle[first + k]].head<3>() += contacts.row[first + k].head<3>();
+        });
+        for (std::uint32_t k = first; k < last; k += kSlice)
+            scratch.slices.push_back({static_cast<std::uint32_t>(owner), k, std::min(last, k + kSlice)});
+    }
+    scratch.sums.resize(scratch.slices.size());
+}
+
+void PressureSystem::velocity_change(Give give, std::span<Vec4> dv) const
+{
+    std::vector<Vec4>& unknowns = scratch_->unknowns;
+    workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) { give(begin, end, unknowns); });
+    workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        simd::sum_gradients(*pairs_, unknowns, begin, end, dv);
+        for (std::size_t i = begin; i < end; ++i) {
+            dv[i] = -mass_ * dv[i] - unknowns[i][3] * scratch_->own_gradient[i];
+            dv[i][3] = 0;
+        }
+    });
+}
+
 void PressureSystem::velocity_change(std::span<const Scalar> x, std::span<Vec4> dv) const
 {
-    std::vector<Vec4>& at = *scratch_;
-    at.resize(size());
-    workers_->for_each(size(), [&](std::size_t i) {
-        at[i] = position_[i];
-        at[i][3] = x[i];
-    });
-    workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        simd::sum_gradients(*pairs_, at, begin, end, dv);
-        for (std::size_t i = begin; i < end; ++i) dv[i] = -mass_ * dv[i] - x[i] * contacts_->gradient[i];
-    });
+    velocity_change(
+        [&](std::size_t begin, std::size_t end, std::span<Vec4> unknowns) {
+            for (std::size_t i = begin; i < end; ++i) unknowns[i][3] = x[i];
+        },
+        dv);
+}
+
+void PressureSystem::density_rate(std::span<const Vec4> velocity, std::size_t begin, std::size_t end,
+                                  std::span<Scalar> rate) const
+{
+    simd::sum_divergences(*pairs_, scratch_->unknowns, velocity, begin, end, rate);
+    for (std::size_t i = begin; i < end; ++i) {
+        rate[i - begin] = velocity[i].head<3>().dot(scratch_->own_gradient[i].head<3>()) - mass_ * rate[i - begin];
+    }
 }
 
 void PressureSystem::density_rate(std::span<const Vec4> velocity, std::span<const Twist> twists,
                                   std::span<Scalar> rate) const
 {
     workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        simd::sum_differences(*pairs_, position_, velocity, begin, end, rate);
-        for (std::size_t i = begin; i < end; ++i) {
-            rate[i] = mass_ * rate[i] + velocity[i].dot(contacts_->gradient[i]); // w is zero in either
-        }
+        density_rate(velocity, begin, end, rate.subspan(begin));
     });
     for (std::size_t owner = 0; owner < twists.size(); ++owner) {
         Vec6 twist;
@@ -49,28 +95,38 @@ void PressureSystem::density_rate(std::span<const Vec4> velocity, std::span<cons
     }
 }
 
-void PressureSystem::impulses(std::span<const Scalar> x, std::span<Wrench> out) const
+template <class Unknown>
+void PressureSystem::sum_impulses(Unknown&& x, std::span<Wrench> out) const
 {
     FLOTSAM_ASSERT(out.size() == contacts_->owners(), "one wrench per owner");
-    workers_->for_each(out.size(), [&](std::size_t owner) {
-        Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
-        for (std::uint32_t k = contacts_->start[owner]; k < contacts_->start[owner + 1]; ++k) {
-            sum += static_cast<double>(x[contacts_->particle[k]]) * contacts_->row[k].cast<double>();
-        }
-        out[owner] = {static_cast<double>(mass_) * sum.head<3>(), static_cast<double>(mass_) * sum.tail<3>()};
+    const std::vector<Slice>& slices = scratch_->slices;
+    std::vector<Eigen::Matrix<double, 6, 1>>& sums = scratch_->sums;
+    workers_->for_tasks(slices.size(), [&](std::size_t s) {
+        sums[s].setZero();
+        for (std::uint32_t k = slices[s].first; k < slices[s].last; ++k)
+            sums[s] += static_cast<double>(x(contacts_->particle[k])) * contacts_->row[k].cast<double>();
     });
+    std::fill(out.begin(), out.end(), Wrench{});
+    const double mass = static_cast<double>(mass_);
+    for (std::size_t s = 0; s < slices.size(); ++s)
+        out[slices[s].owner] += {mass * sums[s].head<3>(), mass * sums[s].tail<3>()};
+}
+
+void PressureSystem::impulses(std::span<const Scalar> x, std::span<Wrench> out) const
+{
+    sum_impulses([&](std::size_t i) { return x[i]; }, out);
+}
+
+void PressureSystem::impulses(std::span<Wrench> out) const
+{
+    sum_impulses([&](std::size_t i) { return unknown(i); }, out);
 }
 
 void PressureSystem::fluid_diagonal(std::span<Scalar> diagonal) const
 {
-    std::vector<Vec4>& sums = *scratch_;
-    sums.resize(size());
-    workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-        simd::sum_gradient_squares(*pairs_, position_, begin, end, sums);
-        for (std::size_t i = begin; i < end; ++i) {
-            const Vec3 total = (mass_ * sums[i] + contacts_->gradient[i]).head<3>();
-            diagonal[i] = total.squaredNorm() + mass_ * mass_ * sums[i][3];
-        }
+    workers_->for_each(size(), [&](std::size_t i) {
+        const Vec4& own = scratch_->own_gradient[i];
+        diagonal[i] = own.head<3>().squaredNorm() + own[3];
     });
 }
 
@@ -102,15 +158,39 @@ void PressureOperator::bind(const PressureSystem& system, const OwnerResponse* r
     twists_.assign(owners, Twist{});
 }
 
+void PressureOperator::apply(PressureSystem::Give give, Take take)
+{
+    const PressureSystem& system = *system_;
+    const Workers& workers = system.workers();
+    system.velocity_change(give, velocity_change_);
+    if (response_ == nullptr) {
+        workers.for_chunks(system.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+            std::array<Scalar, Workers::kChunk> product;
+            system.density_rate(velocity_change_, begin, end, product);
+            for (std::size_t k = 0; k < end - begin; ++k) product[k] = -product[k];
+            take(chunk, begin, end, std::span<const Scalar>(product).first(end - begin));
+        });
+        return;
+    }
+    system.impulses(impulses_);
+    (*response_)(impulses_, twists_);
+    product_.resize(system.size());
+    system.density_rate(velocity_change_, twists_, product_);
+    workers.for_chunks(system.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) product_[i] = -product_[i];
+        take(chunk, begin, end, std::span<const Scalar>(product_).subspan(begin, end - begin));
+    });
+}
+
 void PressureOperator::apply(std::span<const Scalar> x, std::span<Scalar> out)
 {
-    system_->velocity_change(x, velocity_change_);
-    if (response_ != nullptr) {
-        system_->impulses(x, impulses_);
-        (*response_)(impulses_, twists_);
-    }
-    system_->density_rate(velocity_change_, twists_, out);
-    system_->workers().for_each(out.size(), [&](std::size_t i) { out[i] = -out[i]; });
+    apply(
+        [&](std::size_t begin, std::size_t end, std::span<Vec4> unknowns) {
+            for (std::size_t i = begin; i < end; ++i) unknowns[i][3] = x[i];
+        },
+        [&](std::size_t, std::size_t begin, std::size_t, std::span<const Scalar> product) {
+            std::copy(product.begin(), product.end(), out.begin() + static_cast<std::ptrdiff_t>(begin));
+        });
 }
 
 } // namespace flotsam

@@ -29,27 +29,44 @@ using OwnerResponse = FunctionRef<void(std::span<const Wrench> impulses, std::sp
 /// **Differs:** the bodies' response is part of A, not a step between solves.
 class PressureSystem {
   public:
-    /// `position`: of the particles, as the pairs were found [m]; `scratch` is written by velocity_change.
+    /// Rows of an owner whose sums one thread takes.
+    struct Slice {
+        std::uint32_t owner, first, last;
+    };
+    /// What a system keeps, lent to it for its capacity; of one system at a time.
+    struct Scratch {
+        std::vector<Vec4> unknowns;     ///< positions [m], and x of the last velocity_change as fourth components
+        std::vector<Vec4> own_gradient; ///< sum_j m grad W_ij + sum_b rho0 V_b grad W_ib, and sum_j |m grad W_ij|^2
+        std::vector<Slice> slices;
+        std::vector<Eigen::Matrix<double, 6, 1>> sums; ///< of the slices
+    };
+    /// Writes for each particle i of [begin, end) its unknown into unknowns[i].w.
+    using Give = FunctionRef<void(std::size_t begin, std::size_t end, std::span<Vec4> unknowns)>;
+
+    /// `position`: of the particles, as the pairs were found [m].
     PressureSystem(const Pairs& pairs, std::span<const Vec4> position, const Contacts& contacts, double particle_mass,
-                   const Workers& workers, std::vector<Vec4>& scratch)
-        : pairs_(&pairs), position_(position), contacts_(&contacts), mass_(static_cast<Scalar>(particle_mass)),
-          workers_(&workers), scratch_(&scratch)
-    {
-    }
+                   const Workers& workers, Scratch& scratch);
 
     [[nodiscard]] std::size_t size() const { return pairs_->rows(); }
     [[nodiscard]] const Workers& workers() const { return *workers_; }
     [[nodiscard]] const Contacts& contacts() const { return *contacts_; }
     [[nodiscard]] Scalar particle_mass() const { return mass_; }
 
+    /// x of each particle in the last velocity_change.
+    [[nodiscard]] Scalar unknown(std::size_t i) const { return scratch_->unknowns[i][3]; }
+
     /// dv of each particle for multipliers x.
+    void velocity_change(Give give, std::span<Vec4> dv) const;
     void velocity_change(std::span<const Scalar> x, std::span<Vec4> dv) const;
 
     /// (J v)_i for particle velocities and owner twists: the rate of change of the densities [kg/m^3/s].
     void density_rate(std::span<const Vec4> velocity, std::span<const Twist> twists, std::span<Scalar> rate) const;
+    /// Of the particles [begin, end) alone, and what their velocities make of it; rate[0] is of `begin`.
+    void density_rate(std::span<const Vec4> velocity, std::size_t begin, std::size_t end, std::span<Scalar> rate) const;
 
-    /// Impulses on the owners for multipliers x [N s], [N m s].
+    /// Impulses on the owners for multipliers x, or for those of the last velocity_change [N s], [N m s].
     void impulses(std::span<const Scalar> x, std::span<Wrench> out) const;
+    void impulses(std::span<Wrench> out) const;
 
     /// Diagonal of A without the owners' response.
     void fluid_diagonal(std::span<Scalar> diagonal) const;
@@ -61,12 +78,14 @@ class PressureSystem {
     void add_response_diagonal(std::span<const Eigen::Matrix<double, 6, 6>> mobility, std::span<Scalar> diagonal) const;
 
   private:
+    template <class Unknown>
+    void sum_impulses(Unknown&& x, std::span<Wrench> out) const;
+
     const Pairs* pairs_;
-    std::span<const Vec4> position_;
     const Contacts* contacts_;
     Scalar mass_;
     const Workers* workers_;
-    std::vector<Vec4>* scratch_; ///< positions, with the multipliers as fourth components
+    Scratch* scratch_;
 };
 
 class ResponsePreconditioner;
@@ -81,8 +100,15 @@ class PressureOperator {
     void set_preconditioner(ResponsePreconditioner* preconditioner) { preconditioner_ = preconditioner; }
     [[nodiscard]] ResponsePreconditioner* preconditioner() const { return preconditioner_; }
 
+    /// Gets (A x)_i of the particles i of a chunk, product[0] of `begin`; system().unknown(i) still has x_i.
+    using Take =
+        FunctionRef<void(std::size_t chunk, std::size_t begin, std::size_t end, std::span<const Scalar> product)>;
+
     /// out = A x.
     void apply(std::span<const Scalar> x, std::span<Scalar> out);
+    /// The same without arrays of x and of A x, which a solver may need for nothing else: reading and writing them
+    /// costs a tenth of a product. Both are called in parallel.
+    void apply(PressureSystem::Give give, Take take);
 
     [[nodiscard]] const PressureSystem& system() const { return *system_; }
 
@@ -91,6 +117,7 @@ class PressureOperator {
     const OwnerResponse* response_ = nullptr;
     ResponsePreconditioner* preconditioner_ = nullptr;
     std::vector<Vec4> velocity_change_;
+    std::vector<Scalar> product_; ///< where owners respond
     std::vector<Wrench> impulses_;
     std::vector<Twist> twists_;
 };

@@ -1,6 +1,7 @@
 #include "sph/pressure/complementarity_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace flotsam {
@@ -22,25 +23,44 @@ SolveResult SpectralGradient::solve(PressureOperator& op, std::span<const Scalar
     constexpr double kForgetting = 0.98; // of the largest curvature, an iteration
     const Workers& workers = op.system().workers();
     const std::size_t n = x.size();
-    for (auto* v : {&gradient_, &step_, &product_}) v->resize(n);
+    gradient_.resize(n);
+    sums_.resize(Workers::chunk_count(n));
+    const auto total = [&] {
+        Sums sums;
+        for (const Sums& part : sums_) sums += part;
+        return sums;
+    };
+    const auto residual_of = [&](std::size_t i) {
+        const Scalar part = residual_part(gradient_[i], x[i], diagonal[i]);
+        return diagonal[i] > Scalar(0) ? part : Scalar(0);
+    };
     const double pressed = workers.ordered_sum<double>(n, pressed_, [&](std::size_t i) {
         if (!(diagonal[i] > Scalar(0))) x[i] = 0; // a particle alone carries no pressure
         return x[i] > Scalar(0) ? 1.0 : 0.0;
     });
-    const auto residual_of = [&](std::size_t i) {
-        return diagonal[i] > Scalar(0) ? residual_part(gradient_[i], x[i], diagonal[i]) : 0.0;
+    const auto start = [&](std::size_t chunk, std::size_t begin, std::size_t end, std::span<const Scalar> product) {
+        Sums sums;
+        for (std::size_t i = begin; i < end; ++i) {
+            gradient_[i] = product[i - begin] - b[i];
+            sums.residual += static_cast<double>(residual_of(i));
+        }
+        sums_[chunk] = sums;
     };
     SolveResult result;
     if (pressed > 0.0) {
-        op.apply(x, product_);
+        op.apply(
+            [&](std::size_t begin, std::size_t end, std::span<Vec4> unknowns) {
+                for (std::size_t i = begin; i < end; ++i) unknowns[i][3] = x[i];
+            },
+            start);
         ++result.products;
     } else {
-        std::fill(product_.begin(), product_.end(), Scalar(0));
+        workers.for_chunks(n, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+            constexpr std::array<Scalar, Workers::kChunk> kZero{};
+            start(chunk, begin, end, kZero);
+        });
     }
-    Sums sums = workers.ordered_sum<Sums>(n, sums_, [&](std::size_t i) {
-        gradient_[i] = product_[i] - b[i];
-        return Sums{0.0, 0.0, residual_of(i)};
-    });
+    Sums sums = total();
     double length = 0.0; // of the step along -D^-1 g; not known yet
     double least = std::numeric_limits<double>::infinity();
     for (int since_least = 0; since_least < kPatience; ++result.iterations) {
@@ -58,20 +78,37 @@ SolveResult SpectralGradient::solve(PressureOperator& op, std::span<const Scalar
             length = 1.0 / largest_curvature_;
         }
         const Scalar factor = static_cast<Scalar>(length);
-        workers.for_each(n, [&](std::size_t i) {
-            step_[i] = diagonal[i] > Scalar(0) ? std::max(Scalar(0), x[i] - factor * gradient_[i] / diagonal[i]) - x[i]
-                                               : Scalar(0);
-        });
-        op.apply(step_, product_);
+        op.apply(
+            [&](std::size_t begin, std::size_t end, std::span<Vec4> unknowns) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const Scalar to = std::max(Scalar(0), x[i] - factor * gradient_[i] / diagonal[i]);
+                    unknowns[i][3] = diagonal[i] > Scalar(0) ? to - x[i] : Scalar(0);
+                }
+            },
+            [&](std::size_t chunk, std::size_t begin, std::size_t end, std::span<const Scalar> product) {
+                // What the compiler can take four or eight of at a time, and then the sums.
+                std::array<Scalar, Workers::kChunk> step_gradient, gradient_sq, residual;
+                for (std::size_t i = begin; i < end; ++i) {
+                    const std::size_t k = i - begin;
+                    const Scalar step = op.system().unknown(i), change = product[k];
+                    const bool counts = (x[i] > Scalar(0)) | (step > Scalar(0)); // is or becomes free
+                    const Scalar square = change * change / diagonal[i];
+                    gradient_[i] += change;
+                    x[i] = std::max(Scalar(0), x[i] + step);
+                    step_gradient[k] = step * change;
+                    gradient_sq[k] = counts ? square : Scalar(0);
+                    residual[k] = residual_of(i);
+                }
+                Sums part;
+                for (std::size_t k = 0; k < end - begin; ++k) {
+                    part.step_gradient += static_cast<double>(step_gradient[k]);
+                    part.gradient_sq += static_cast<double>(gradient_sq[k]);
+                    part.residual += static_cast<double>(residual[k]);
+                }
+                sums_[chunk] = part;
+            });
         ++result.products;
-        sums = workers.ordered_sum<Sums>(n, sums_, [&](std::size_t i) {
-            const double change = product_[i];
-            const bool counts = x[i] > Scalar(0) || step_[i] > Scalar(0); // is or becomes free
-            gradient_[i] += product_[i];
-            x[i] = std::max(Scalar(0), x[i] + step_[i]);
-            return Sums{static_cast<double>(step_[i]) * change,
-                        counts ? change * change / static_cast<double>(diagonal[i]) : 0.0, residual_of(i)};
-        });
+        sums = total();
         const bool has_curvature = sums.step_gradient > 0.0 && sums.gradient_sq > 0.0;
         length = has_curvature ? sums.step_gradient / sums.gradient_sq : 0.0;
         if (has_curvature) largest_curvature_ = std::max(kForgetting * largest_curvature_, 1.0 / length);

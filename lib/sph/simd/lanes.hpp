@@ -89,7 +89,8 @@ HWY_INLINE float sum_lanes(V v)
     return hn::GetLane(hn::SumOfLanes(Floats(), v));
 }
 
-HWY_INLINE V dot(const V3& a, const V3& b)
+template <class B>
+HWY_INLINE V dot(const V3& a, const B& b)
 {
     return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }

@@ -19,25 +19,25 @@ void sum_gradients(const Pairs& pairs, const Vec4* points, std::size_t begin, st
         for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
             const V4 other = load_transposed(points, pairs.index.data() + k);
             const V3 x = difference(own, other);
-            const V factor = hn::Mul(slope, hn::Add(own.w, other.w));
+            const V factor = hn::Mul(slope, other.w);
             sum = {hn::MulAdd(factor, x.x, sum.x), hn::MulAdd(factor, x.y, sum.y), hn::MulAdd(factor, x.z, sum.z)};
         });
         store_vec3(sum, out + i);
     }
 }
 
-void sum_differences(const Pairs& pairs, const Vec4* position, const Vec4* velocity, std::size_t begin, std::size_t end,
+void sum_divergences(const Pairs& pairs, const Vec4* position, const Vec4* velocity, std::size_t begin, std::size_t end,
                      Scalar* out)
 {
     for (std::size_t i = begin; i < end; ++i) {
-        const V4 own = broadcast(position[i]), own_v = broadcast(velocity[i]);
+        const V4 own = broadcast(position[i]);
         V sum = hn::Zero(Floats());
         for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
             const V3 x = difference(own, load_transposed(position, pairs.index.data() + k));
-            const V3 v = difference(own_v, load_transposed(velocity, pairs.index.data() + k));
+            const V4 v = load_transposed(velocity, pairs.index.data() + k);
             sum = hn::MulAdd(slope, dot(x, v), sum);
         });
-        out[i] = sum_lanes(sum);
+        out[i - begin] = sum_lanes(sum);
     }
 }
 
@@ -205,7 +205,7 @@ HWY_AFTER_NAMESPACE();
 namespace flotsam::simd {
 
 HWY_EXPORT(sum_gradients);
-HWY_EXPORT(sum_differences);
+HWY_EXPORT(sum_divergences);
 HWY_EXPORT(sum_gradient_squares);
 HWY_EXPORT(fit_linear);
 HWY_EXPORT(sum_viscous_pulls);
@@ -219,10 +219,10 @@ void sum_gradients(const Pairs& pairs, std::span<const Vec4> at, std::size_t beg
     HWY_DYNAMIC_DISPATCH(sum_gradients)(pairs, at.data(), begin, end, out.data());
 }
 
-void sum_differences(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+void sum_divergences(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
                      std::size_t begin, std::size_t end, std::span<Scalar> out)
 {
-    HWY_DYNAMIC_DISPATCH(sum_differences)(pairs, position.data(), velocity.data(), begin, end, out.data());
+    HWY_DYNAMIC_DISPATCH(sum_divergences)(pairs, position.data(), velocity.data(), begin, end, out.data());
 }
 
 void sum_gradient_squares(const Pairs& pairs, std::span<const Vec4> position, std::size_t begin, std::size_t end,

@@ -11,17 +11,17 @@
 /// over the neighbours of a particle are taken in a fixed order that depends on the instruction set alone.
 ///
 /// A neighbour's values are loaded as float4 and transposed in registers, and the slope of a pair is stored: eight
-/// bytes a pair. Nanoseconds a pair of sum_gradients and sum_differences with 76 neighbours, AVX2, one core: 0.5 and
+/// bytes a pair. Nanoseconds a pair of sum_gradients and sum_divergences with 76 neighbours, AVX2, one core: 0.5 and
 /// 0.7; with stored gradients (20 bytes a pair) 0.9 and 1.0, with slopes computed anew 1.1 and 1.2, and those with
 /// gathers 4.
 namespace flotsam::simd {
 
-/// out_i = sum_j (w_i + w_j) grad W_ij, out.w = 0; `at`: x, y, z and w.
+/// out_i = sum_j w_j grad W_ij, out.w = 0; `at`: x, y, z and w.
 void sum_gradients(const Pairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
                    std::span<Vec4> out);
 
-/// out_i = sum_j (v_i - v_j) . grad W_ij
-void sum_differences(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+/// out_(i - begin) = sum_j v_j . grad W_ij
+void sum_divergences(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
                      std::size_t begin, std::size_t end, std::span<Scalar> out);
 
 /// out_i = (sum_j grad W_ij, sum_j |grad W_ij|^2)

@@ -22,7 +22,7 @@ struct Cloud {
     Pairs pairs, boundary_pairs;
     Contacts contacts;
     std::vector<Scalar> density;
-    std::vector<Vec4> scratch;
+    PressureSystem::Scratch scratch;
 
     KernelKind kernel_kind;
 
