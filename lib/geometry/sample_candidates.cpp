@@ -3,6 +3,7 @@
 #include "geometry/split_mix.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace flotsam {
 namespace {
@@ -25,10 +26,29 @@ class Quota {
     double per_area_, owed_;
 };
 
+/// Leaves of a convex polygon what lies in the box. **Source:** Sutherland & Hodgman 1974.
+void clip_polygon(const Aabb& box, std::vector<Vec3d>& polygon)
+{
+    std::vector<Vec3d> kept;
+    for (int side = 0; side < 6; ++side) {
+        const int axis = side / 2;
+        const double sign = side % 2 == 0 ? 1.0 : -1.0, border = side % 2 == 0 ? box.min[axis] : -box.max[axis];
+        const auto depth = [&](const Vec3d& p) { return sign * p[axis] - border; };
+        kept.clear();
+        for (std::size_t k = 0; k < polygon.size(); ++k) {
+            const Vec3d &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+            const double at_p = depth(p), at_q = depth(q);
+            if (at_p >= 0.0) kept.push_back(p);
+            if ((at_p < 0.0) != (at_q < 0.0)) kept.push_back(p + at_p / (at_p - at_q) * (q - p));
+        }
+        polygon.swap(kept);
+    }
+}
+
 class Sampler {
   public:
-    Sampler(const OffsetSurface& offset, double per_area, std::uint64_t seed)
-        : offset_(offset), mesh_(offset.surface().mesh()), random_(seed), quota_(per_area, random_)
+    Sampler(const OffsetSurface& offset, double per_area, std::uint64_t seed, const Aabb& region)
+        : offset_(offset), mesh_(offset.surface().mesh()), random_(seed), quota_(per_area, random_), region_(region)
     {
         result_.area_each = 1.0 / per_area;
     }
@@ -43,7 +63,35 @@ class Sampler {
   private:
     void sample_triangle(std::size_t t)
     {
-        const Vec3d a = mesh_.corner(t, 0), ab = mesh_.corner(t, 1) - a, ac = mesh_.corner(t, 2) - a;
+        const std::array<Vec3d, 3> corners = {mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2)};
+        Aabb box;
+        for (const Vec3d& corner : corners) box.extend(corner);
+        if (region_.contains(box.min) && region_.contains(box.max)) return sample_below(corners, t);
+        if (!(box.min.array() <= region_.max.array()).all() || !(box.max.array() >= region_.min.array()).all()) return;
+        polygon_.assign(corners.begin(), corners.end());
+        clip_polygon(region_, polygon_);
+        add_cuts();
+        for (std::size_t k = 2; k < polygon_.size(); ++k) sample_below({polygon_[0], polygon_[k - 1], polygon_[k]}, t);
+    }
+
+    void add_cuts()
+    {
+        for (std::size_t k = 0; k < polygon_.size(); ++k) {
+            const Vec3d &p = polygon_[k], &q = polygon_[(k + 1) % polygon_.size()];
+            for (int side = 0; side < 6; ++side) {
+                const int axis = side / 2;
+                const double border = side % 2 == 0 ? region_.min[axis] : region_.max[axis];
+                const double near = 1e-9 * std::max(1.0, std::abs(border));
+                if (std::abs(p[axis] - border) < near && std::abs(q[axis] - border) < near)
+                    result_.cut[static_cast<std::size_t>(side)] += (q - p).norm();
+            }
+        }
+    }
+
+    /// Of the triangle t, or a triangle in it.
+    void sample_below(const std::array<Vec3d, 3>& corners, std::size_t t)
+    {
+        const Vec3d a = corners[0], ab = corners[1] - a, ac = corners[2] - a;
         const Vec3d inward = offset_.inward(t);
         for (int count = quota_.take(0.5 * ab.cross(ac).norm()); count > 0; --count) {
             double u = random_.uniform(), v = random_.uniform();
@@ -91,8 +139,9 @@ class Sampler {
             if (bend[v] < kSharpVertex && !topology.on_boundary[v]) sample_cap(v, axis[v], widest[v]);
     }
 
-    void sample_arc(const Vec3d& a, const Vec3d& b, const Vec3d& from, const Vec3d& to)
+    void sample_arc(Vec3d a, Vec3d b, const Vec3d& from, const Vec3d& to)
     {
+        if (!clip_segment(region_, a, b)) return;
         const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
         const Vec3d across = (to - from.dot(to) * from).normalized();
         for (int count = quota_.take(angle * offset_.inset() * (b - a).norm()); count > 0; --count) {
@@ -103,6 +152,7 @@ class Sampler {
 
     void sample_cap(std::size_t v, const Vec3d& axis, double widest)
     {
+        if (!region_.contains(mesh_.vertices[v])) return;
         const double inset = offset_.inset(), min_cosine = std::max(widest, -1.0);
         const Quatd turn = Quatd::FromTwoVectors(Vec3d::UnitZ(), axis);
         for (int count = quota_.take(2.0 * std::numbers::pi * (1.0 - min_cosine) * inset * inset); count > 0; --count)
@@ -122,14 +172,35 @@ class Sampler {
     const TriangleMesh& mesh_;
     SplitMix random_;
     Quota quota_;
+    Aabb region_;
+    std::vector<Vec3d> polygon_; ///< scratch
     SampleCandidates result_;
 };
 
 } // namespace
 
-SampleCandidates sample_candidates(const OffsetSurface& offset, double per_area, std::uint64_t seed)
+bool clip_segment(const Aabb& box, Vec3d& a, Vec3d& b)
 {
-    return Sampler(offset, per_area, seed).sample();
+    const Vec3d way = b - a;
+    double first = 0.0, last = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (way[axis] == 0.0) {
+            if (a[axis] < box.min[axis] || a[axis] > box.max[axis]) return false;
+            continue;
+        }
+        const double low = (box.min[axis] - a[axis]) / way[axis], high = (box.max[axis] - a[axis]) / way[axis];
+        first = std::max(first, std::min(low, high));
+        last = std::min(last, std::max(low, high));
+    }
+    if (!(first < last)) return false;
+    if (last < 1.0) b = a + last * way;
+    if (first > 0.0) a += first * way;
+    return true;
+}
+
+SampleCandidates sample_candidates(const OffsetSurface& offset, double per_area, std::uint64_t seed, const Aabb& region)
+{
+    return Sampler(offset, per_area, seed, region).sample();
 }
 
 } // namespace flotsam

@@ -1,182 +1,44 @@
 #include "flotsam/geometry/surface_samples.hpp"
 
 #include "flotsam/core/contracts.hpp"
-#include "geometry/blue_noise.hpp"
 #include "geometry/crease_samples.hpp"
+#include "geometry/layer_samples.hpp"
 #include "geometry/outline_samples.hpp"
-#include "geometry/point_grid.hpp"
-#include "geometry/sample_candidates.hpp"
-#include "geometry/sample_rods.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace flotsam {
 namespace {
 
-constexpr double kManyCandidates = 20.0, kFewCandidates = 6.0; ///< per sample, of small and of large surfaces
-constexpr double kAllCandidates = 40000.0;                     ///< between them, altogether
-constexpr double kHexagonal =
-    1.0746; ///< distance of neighbours in a hexagonal lattice of unit area each, sqrt(2/sqrt 3)
-// The push has the reach of the kernel and some of the last step's drift: that evens out the density of samples as
-// fluid feels it to 1.5 % (4 % without drift, 6 % with a reach of 1.5 spacings).
-constexpr double kReach = 2.0;  ///< spacings up to which samples push each other
-constexpr double kPush = 0.4;   ///< spacings a lone pair at zero distance moves apart in one step
-constexpr double kDrift = 0.85; ///< of the last step that goes on
-constexpr int kSteps = 50;
-constexpr double kClosest = 0.75; ///< spacings: the closer one of a pair goes
-constexpr double kHole = 0.85;    ///< spacings from the next sample: a candidate becomes one
-
-/// Area of the surface that candidates stand for. The two layers of a solid little thicker than two insets, and the
-/// one layer of a thinner one that candidates reach from both sides, count as one.
-double covered_area(const SampleCandidates& candidates, double spacing, const Workers& workers)
+bool is_closed(const MeshTopology& mesh)
 {
-    const double reach = 0.6 * spacing;
-    const PointGrid grid(positions_of(candidates.points), reach);
-    std::vector<double> scratch;
-    return workers.ordered_sum<double>(candidates.points.size(), scratch, [&](std::size_t i) {
-        const OffsetPoint& point = candidates.points[i];
-        int same = 0, opposite = 0;
-        grid.for_near(point.position, reach, [&](std::size_t j, double) {
-            ++(candidates.points[j].direction.dot(point.direction) > -0.5 ? same : opposite);
-        });
-        return candidates.area_each * same / (same + opposite);
-    });
-}
-
-double mesh_area(const TriangleMesh& mesh)
-{
-    double area = 0.0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        area += 0.5 * (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0)).norm();
-    return area;
-}
-
-double rim_length(const OffsetSurface& offset)
-{
-    double length = 0.0;
-    const TriangleMesh& mesh = offset.surface().mesh();
-    for (const MeshEdge& edge : offset.topology().edges)
-        if (edge.triangles == 1)
-            length +=
-                (mesh.vertices[static_cast<std::size_t>(edge.b)] - mesh.vertices[static_cast<std::size_t>(edge.a)])
-                    .norm();
-    return length;
-}
-
-/// One step in which samples push their neighbours along the surface.
-void repel(std::vector<OffsetPoint>& samples, std::vector<Vec3d>& drift, std::size_t fixed, const OffsetSurface& offset,
-           double spacing, const Workers& workers)
-{
-    drift.resize(samples.size(), Vec3d::Zero());
-    const double reach = kReach * spacing;
-    const std::vector<Vec3d> before = positions_of(samples);
-    const PointGrid grid(before, reach);
-    workers.for_each(samples.size() - fixed, [&](std::size_t k) {
-        const std::size_t i = fixed + k;
-        Vec3d push = Vec3d::Zero();
-        grid.for_near(before[i], reach, [&](std::size_t j, double distance_sq) {
-            if (j == i || distance_sq == 0.0) return;
-            const double distance = std::sqrt(distance_sq), gap = 1.0 - distance / reach;
-            push += gap * gap / distance * (before[i] - before[j]);
-        });
-        push = kPush * spacing * push + kDrift * drift[i];
-        const double length = push.norm(), longest = 0.15 * spacing;
-        if (length > longest) push *= longest / length;
-        if (const auto moved = offset.project(before[i] + push, samples[i])) samples[i] = *moved;
-        drift[i] = samples[i].position - before[i];
-    });
-}
-
-void drop_crowded(std::vector<OffsetPoint>& samples, double closest)
-{
-    const PointGrid grid(positions_of(samples), closest);
-    std::vector<bool> dropped(samples.size(), false);
-    std::vector<OffsetPoint> kept;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        grid.for_near(samples[i].position, closest,
-                      [&](std::size_t j, double) { dropped[i] = dropped[i] || (j < i && !dropped[j]); });
-        if (!dropped[i]) kept.push_back(samples[i]);
-    }
-    samples = std::move(kept);
-}
-
-/// Candidates farther than `hole` from every sample become samples. Were there any?
-bool fill_holes(std::vector<OffsetPoint>& samples, const SampleCandidates& candidates, double hole)
-{
-    const PointGrid grid(positions_of(samples), hole);
-    const auto before = static_cast<std::ptrdiff_t>(samples.size());
-    for (const OffsetPoint& point : candidates.points) {
-        const auto near = [&](const OffsetPoint& added) { return (added.position - point.position).norm() < hole; };
-        if (grid.nearest(point.position, hole) < hole) continue;
-        if (std::none_of(samples.begin() + before, samples.end(), near)) samples.push_back(point);
-    }
-    return static_cast<std::ptrdiff_t>(samples.size()) > before;
-}
-
-/// `samples` come as those that stay where they are; the rest is chosen from the candidates and evened out.
-void choose_samples(std::vector<OffsetPoint>& samples, const SampleCandidates& candidates, std::size_t count,
-                    const OffsetSurface& offset, double spacing, const Workers& workers)
-{
-    const std::size_t fixed = samples.size();
-    {
-        std::vector<Vec3d> positions = positions_of(samples);
-        positions.reserve(fixed + candidates.points.size());
-        for (const OffsetPoint& candidate : candidates.points) positions.push_back(candidate.position);
-        for (std::size_t i : eliminate_crowded(positions, fixed, count, kHexagonal * spacing, workers))
-            if (i >= fixed) samples.push_back(candidates.points[i - fixed]); // the fixed ones always stay
-    }
-    std::vector<Vec3d> drift;
-    for (int step = 0; step < kSteps; ++step) repel(samples, drift, fixed, offset, spacing, workers);
-    for (int round = 0; round < 3; ++round) {
-        drop_crowded(samples, kClosest * spacing);
-        if (!fill_holes(samples, candidates, kHole * spacing)) return;
-        drift.clear();
-        for (int step = 0; step < 5; ++step) repel(samples, drift, fixed, offset, spacing, workers);
-    }
-    drop_crowded(samples, kClosest * spacing);
-}
-
-std::vector<OffsetPoint> sample_layer(const OffsetSurface& offset, const SurfaceSampleSettings& settings,
-                                      const Workers& workers)
-{
-    const double d = settings.spacing;
-    const double rough_count = mesh_area(offset.surface().mesh()) / (d * d);
-    const double each = std::clamp(kAllCandidates / rough_count, kFewCandidates, kManyCandidates);
-    const SampleCandidates candidates = sample_candidates(offset, each / (d * d), settings.seed);
-    std::vector<OffsetPoint> samples = sample_creases(offset, d);
-    if (!candidates.points.empty()) {
-        // Samples on a rim have half of their surroundings off the surface.
-        const double area = covered_area(candidates, d, workers) + 0.5 * d * rim_length(offset);
-        const auto count = static_cast<std::size_t>(std::max(1.0, std::round(area / (d * d))));
-        choose_samples(samples, candidates, count, offset, d, workers);
-    }
-    sample_rods(samples, candidates.bare, offset, d);
-    return samples;
+    return std::find(mesh.on_boundary.begin(), mesh.on_boundary.end(), true) == mesh.on_boundary.end();
 }
 
 /// Fins without thickness have their solid on the wrong side of both faces.
-void drop_wrong_side(std::vector<OffsetPoint>& samples, const SurfaceQuery& surface, bool inside)
+void drop_wrong_side(std::vector<OffsetPoint>& samples, const SurfaceQuery& surface,
+                     const SurfaceSampleSettings& settings)
 {
-    const MeshTopology mesh = topology(surface.mesh());
-    if (std::find(mesh.on_boundary.begin(), mesh.on_boundary.end(), true) != mesh.on_boundary.end()) return;
+    const bool inside = settings.solid == SurfaceSampleSettings::Solid::inside;
     std::erase_if(samples, [&](const OffsetPoint& sample) { return surface.inside(sample.position) != inside; });
 }
 
-} // namespace
+bool has_wrong_side(const SurfaceSampleSettings& settings, const MeshTopology& mesh)
+{
+    return settings.inset > 0.0 && settings.solid != SurfaceSampleSettings::Solid::both && is_closed(mesh);
+}
 
-SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings,
-                              const Workers& workers)
+void require_valid(const SurfaceSampleSettings& settings)
 {
     require(settings.spacing > 0.0, "sample spacing must be > 0 [m]", settings.spacing);
     require(settings.inset >= 0.0, "inset of samples must be >= 0 [m]", settings.inset);
     require(settings.dimensions == 2 || settings.dimensions == 3, "dimensions must be 2 or 3", settings.dimensions);
+}
 
-    std::vector<OffsetPoint> points = settings.dimensions == 2 ? sample_outline(surface, settings)
-                                                               : sample_layer({surface, settings}, settings, workers);
-    if (settings.inset > 0.0 && settings.solid != SurfaceSampleSettings::Solid::both)
-        drop_wrong_side(points, surface, settings.solid == SurfaceSampleSettings::Solid::inside);
+SurfaceSamples samples_at(const std::vector<OffsetPoint>& points)
+{
     SurfaceSamples samples;
     std::size_t thin = 0;
     for (const OffsetPoint& point : points) {
@@ -186,6 +48,152 @@ SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSe
     }
     if (!points.empty()) samples.thin_fraction = static_cast<double>(thin) / static_cast<double>(points.size());
     return samples;
+}
+
+} // namespace
+
+SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings,
+                              const Workers& workers)
+{
+    require_valid(settings);
+    if (settings.dimensions == 3) return SurfaceSampler(surface, settings, 1e300).sample(0, workers).samples;
+    std::vector<OffsetPoint> points = sample_outline(surface, settings);
+    if (has_wrong_side(settings, topology(surface.mesh()))) drop_wrong_side(points, surface, settings);
+    return samples_at(points);
+}
+
+struct SurfaceSampler::Impl {
+    static constexpr double kMargin = 5.0; ///< spacings around a part in which it is chosen as well, and dropped
+
+    const SurfaceQuery& surface;
+    SurfaceSampleSettings settings;
+    OffsetSurface offset;
+    bool drops_wrong_side;
+    std::vector<OffsetPoint> creases;
+    Vec3d low, part_size;
+    std::array<int, 3> counts{};
+    std::vector<char> is_sampled;
+    std::vector<std::vector<OffsetPoint>> borders; ///< of each part that was sampled: its samples near other parts
+
+    Impl(const SurfaceQuery& of, const SurfaceSampleSettings& given, double size)
+        : surface(of), settings(given), offset(of, given), drops_wrong_side(has_wrong_side(given, offset.topology())),
+          creases(sample_creases(offset, given.spacing))
+    {
+        const Aabb box = surface.bounds();
+        low = box.min;
+        std::size_t total = 1;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double extent = box.size()[static_cast<Eigen::Index>(axis)];
+            counts[axis] = static_cast<int>(std::clamp(std::floor(extent / size), 1.0, 1000.0));
+            part_size[static_cast<Eigen::Index>(axis)] = extent / counts[axis];
+            total *= static_cast<std::size_t>(counts[axis]);
+        }
+        is_sampled.assign(total, 0);
+        borders.resize(total);
+    }
+
+    [[nodiscard]] int along(int axis, double x) const
+    {
+        const int last = counts[static_cast<std::size_t>(axis)] - 1;
+        if (last == 0) return 0;
+        return static_cast<int>(
+            std::clamp(std::floor((x - low[axis]) / part_size[axis]), 0.0, static_cast<double>(last)));
+    }
+    [[nodiscard]] std::size_t index(int x, int y, int z) const
+    {
+        return static_cast<std::size_t>(x) +
+               static_cast<std::size_t>(counts[0]) *
+                   (static_cast<std::size_t>(y) + static_cast<std::size_t>(counts[1]) * static_cast<std::size_t>(z));
+    }
+    [[nodiscard]] std::size_t part_of(const Vec3d& p) const
+    {
+        return index(along(0, p.x()), along(1, p.y()), along(2, p.z()));
+    }
+    /// Parts at the border have all that is beyond.
+    [[nodiscard]] Aabb box_of(std::size_t part) const
+    {
+        const std::size_t nx = static_cast<std::size_t>(counts[0]), ny = static_cast<std::size_t>(counts[1]);
+        const std::array<std::size_t, 3> at = {part % nx, part / nx % ny, part / nx / ny};
+        Aabb box{Vec3d::Constant(-1e300), Vec3d::Constant(1e300)};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto axis = static_cast<Eigen::Index>(k);
+            const double begin = low[axis] + static_cast<double>(at[k]) * part_size[axis];
+            if (at[k] > 0) box.min[axis] = begin;
+            if (static_cast<int>(at[k]) + 1 < counts[k]) box.max[axis] = begin + part_size[axis];
+        }
+        return box;
+    }
+};
+
+SurfaceSampler::SurfaceSampler(const SurfaceQuery& surface, const SurfaceSampleSettings& settings, double part_size)
+{
+    require_valid(settings);
+    require(settings.dimensions == 3, "a surface is sampled in parts in 3 dimensions only", settings.dimensions);
+    require(part_size >= 4.0 * Impl::kMargin * settings.spacing, "a part must be 20 sample spacings wide or more [m]",
+            part_size);
+    impl_ = std::make_unique<Impl>(surface, settings, part_size);
+}
+
+SurfaceSampler::~SurfaceSampler() = default;
+
+std::size_t SurfaceSampler::parts() const
+{
+    return impl_->is_sampled.size();
+}
+
+bool SurfaceSampler::is_sampled(std::size_t part) const
+{
+    return impl_->is_sampled[part] != 0;
+}
+
+void SurfaceSampler::visit_parts(const Aabb& box, FunctionRef<void(std::size_t part)> visit) const
+{
+    const Impl& impl = *impl_;
+    for (int z = impl.along(2, box.min.z()); z <= impl.along(2, box.max.z()); ++z)
+        for (int y = impl.along(1, box.min.y()); y <= impl.along(1, box.max.y()); ++y)
+            for (int x = impl.along(0, box.min.x()); x <= impl.along(0, box.max.x()); ++x) visit(impl.index(x, y, z));
+}
+
+SurfaceSampler::Part SurfaceSampler::sample(std::size_t part, const Workers& workers)
+{
+    Impl& impl = *impl_;
+    require(part < parts() && !is_sampled(part), "no part of this number is left to be sampled",
+            static_cast<double>(part));
+    const double d = impl.settings.spacing;
+    const Aabb box = impl.box_of(part);
+    LayerPart layer{box.inflated(Impl::kMargin * d), box.inflated(d), {}};
+    for (int side = 0; side < 6; ++side) {
+        Vec3d beyond =
+            0.5 * (box.min.cwiseMax(impl.surface.bounds().min) + box.max.cwiseMin(impl.surface.bounds().max));
+        beyond[side / 2] = (side % 2 == 0 ? layer.region.min : layer.region.max)[side / 2];
+        layer.is_continued[static_cast<std::size_t>(side)] = is_sampled(impl.part_of(beyond));
+    }
+    std::vector<OffsetPoint> fixed;
+    visit_parts(layer.region, [&](std::size_t other) {
+        for (const OffsetPoint& point : impl.borders[other])
+            if (layer.region.contains(point.position)) fixed.push_back(point);
+    });
+    const auto known = static_cast<std::ptrdiff_t>(fixed.size());
+    for (const OffsetPoint& point : impl.creases)
+        if (layer.region.contains(point.position) && !is_sampled(impl.part_of(point.position))) fixed.push_back(point);
+    std::vector<OffsetPoint> all = sample_layer(impl.offset, impl.settings, std::move(fixed), layer, workers);
+
+    std::vector<OffsetPoint> own, around(all.begin(), all.begin() + known);
+    for (auto point = all.begin() + known; point != all.end(); ++point) {
+        const std::size_t at = impl.part_of(point->position);
+        // What fills a gap just beyond the border of a part that has its samples is not dropped.
+        const bool fills_gap = is_sampled(at) && layer.moves.contains(point->position);
+        (at == part || fills_gap ? own : around).push_back(*point);
+    }
+    if (impl.drops_wrong_side) {
+        drop_wrong_side(own, impl.surface, impl.settings);
+        drop_wrong_side(around, impl.surface, impl.settings);
+    }
+    const Aabb core = box.inflated(-Impl::kMargin * d);
+    for (const OffsetPoint& point : own)
+        if (!core.contains(point.position)) impl.borders[part].push_back(point);
+    impl.is_sampled[part] = 1;
+    return {samples_at(own), samples_at(around)};
 }
 
 } // namespace flotsam

@@ -2,6 +2,7 @@
 
 #include "flotsam/core/parallel.hpp"
 #include "flotsam/geometry/surface_query.hpp"
+#include "flotsam/geometry/surface_samples.hpp"
 #include "flotsam/sph/cell_grid.hpp"
 #include "flotsam/sph/kernel.hpp"
 #include "flotsam/sph/neighbourhood.hpp"
@@ -32,6 +33,8 @@ struct Wall {
     std::optional<Aabb> box;       ///< of a box wall
     std::array<bool, 6> open = {}; ///< of a box wall: -x +x -y +y -z +z
     std::unique_ptr<SurfaceQuery> query;
+    std::unique_ptr<SurfaceSampler> sampler; ///< of parts that no water has come near yet; null: there are none
+    bool is_noted_thin = false;
 };
 
 /// A body's surface about its centre of mass.
@@ -123,6 +126,7 @@ struct FluidWorld::Impl {
     std::vector<std::uint32_t> sort_id;
     std::vector<double> sums;
     std::vector<MaxOf> max_scratch;
+    std::vector<char> reached_parts; ///< of a wall
     std::vector<Wrench> unit;
     std::vector<Twist> answer;
     std::vector<GuardedMotion> motion;
@@ -162,14 +166,19 @@ struct FluidWorld::Impl {
     void choose_wall_sides();
     void seed_where_dry(FluidSeed seed);
     void cut_and_place_fluid();
-    void sample_surfaces();
-    void sample_body(std::size_t k);
-    void sample_surface_of(std::size_t owner, const SurfaceQuery& surface, SurfaceSampleSettings::Solid solid,
-                           const std::string& name);
     void relax(int max_rounds);
     void guard_relaxation();
     [[nodiscard]] bool in_solid(const Vec3d& point) const;
     [[nodiscard]] bool in_body(std::size_t k, const Pose& pose, const Vec3d& point) const;
+
+    // sample_surfaces.cpp
+    void sample_surfaces();
+    void sample_body(std::size_t k);
+    void prepare_wall_samples(std::size_t k);
+    void sample_walls_in_reach();
+    [[nodiscard]] SurfaceSampleSettings sample_settings(SurfaceSampleSettings::Solid solid) const;
+    void add_samples(std::size_t owner, const SurfaceSamples& samples, const SurfaceSamples& around);
+    void note_thin(const std::string& name, double fraction);
 
     // settle.cpp
     void settle(const std::function<void(const SettleProgress&)>& on_round);

@@ -1,7 +1,6 @@
 #include "world/fluid_world_impl.hpp"
 
 #include "flotsam/core/contracts.hpp"
-#include "world/boundary_calibration.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -158,58 +157,13 @@ void FluidWorld::Impl::cut_and_place_fluid()
     seeds.shrink_to_fit();
 }
 
-void FluidWorld::Impl::sample_surfaces()
-{
-    using Solid = SurfaceSampleSettings::Solid;
-    for (std::size_t k = 0; k < walls.size(); ++k) {
-        const WallSide side = walls[k].side;
-        const Solid solid = side == WallSide::inside    ? Solid::outside
-                            : side == WallSide::outside ? Solid::inside
-                                                        : Solid::both;
-        sample_surface_of(k, *walls[k].query, solid, walls[k].name);
-    }
-    for (std::size_t k = 0; k < bodies.size(); ++k) sample_body(k);
-}
-
-void FluidWorld::Impl::sample_body(std::size_t k)
-{
-    if (!bodies[k].query) return; // removed
-    sample_surface_of(walls.size() + k, *bodies[k].query, SurfaceSampleSettings::Solid::inside, bodies[k].name);
-}
-
-void FluidWorld::Impl::sample_surface_of(std::size_t owner, const SurfaceQuery& surface,
-                                         SurfaceSampleSettings::Solid solid, const std::string& name)
-{
-    SurfaceSampleSettings sampling;
-    sampling.spacing = 0.7 * spacing();
-    sampling.inset = boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
-    sampling.dimensions = settings.dimensions;
-    sampling.solid = solid;
-    const SurfaceSamples samples = sample_surface(surface, sampling, workers);
-    const std::vector<double> volumes =
-        sample_volumes(samples.positions, samples.depth, settings.kernel, spacing(), settings.dimensions);
-    for (std::size_t b = 0; b < volumes.size(); ++b) {
-        Vec4 position = Vec4::Zero();
-        position.head<3>() = samples.positions[b].cast<Scalar>();
-        boundary.position.push_back(position);
-        boundary.volume.push_back(static_cast<Scalar>(volumes[b]));
-        boundary.velocity.push_back(Vec4::Zero());
-        boundary.owner.push_back(static_cast<std::int32_t>(owner));
-        boundary.position_body.push_back(samples.positions[b]);
-    }
-    if (!(samples.thin_fraction > 0.0)) return;
-    std::ostringstream note;
-    note << name << " is thinner than two layers of samples take, " << 2.0 * sampling.inset << " m, on "
-         << std::lround(100.0 * samples.thin_fraction) << " % of its surface: one layer of samples in its middle";
-    notes.push_back(note.str());
-}
-
 /// The lattice of the start is a little too dense where it was cut or stretched: shift it to rest density before any
 /// velocity can come of it.
 void FluidWorld::Impl::relax(int max_rounds)
 {
     StepReport ignored;
     for (int round = 0; round < max_rounds && fluid.size() > 0; ++round) {
+        sample_walls_in_reach();
         find_neighbours();
         measure_density(ignored);
         if (ignored.compression_mean <= 0.5 * settings.pressure.tolerance && ignored.compression_max < 0.01) break;

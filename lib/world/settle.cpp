@@ -58,6 +58,7 @@ void FluidWorld::Impl::settle(const std::function<void(const SettleProgress&)>& 
 double FluidWorld::Impl::settle_round(double dt, Bodies& held)
 {
     StepReport ignored;
+    sample_walls_in_reach();
     find_neighbours();
     measure_density(ignored);
     const std::size_t n = fluid.size();

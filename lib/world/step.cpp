@@ -44,6 +44,7 @@ StepReport FluidWorld::Impl::step(double dt, Bodies& port)
         take_in_changes(report);
         remove_fallen(report);
         place_body_samples();
+        sample_walls_in_reach();
     }
     {
         const StageClock clock(report.seconds.neighbours);

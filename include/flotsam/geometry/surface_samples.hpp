@@ -4,6 +4,7 @@
 #include "flotsam/geometry/surface_query.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -40,5 +41,34 @@ struct SurfaceSamples {
 /// the plane y = 0.
 [[nodiscard]] SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSettings& settings,
                                             const Workers& workers = Workers(1));
+
+/// The same, part by part: for large surfaces of which little is needed. The parts are the cells of a grid over the
+/// surface's bounds; those at the border have what is beyond. Parts fit together whatever the order in which they are
+/// sampled, but the samples near their borders depend on it. Three dimensions only.
+class SurfaceSampler {
+  public:
+    /// `surface` must outlive it; `part_size`: least edge of a part [m], 20 spacings or more. Throws as sample_surface.
+    SurfaceSampler(const SurfaceQuery& surface, const SurfaceSampleSettings& settings, double part_size);
+    ~SurfaceSampler();
+    SurfaceSampler(const SurfaceSampler&) = delete;
+    SurfaceSampler& operator=(const SurfaceSampler&) = delete;
+
+    [[nodiscard]] std::size_t parts() const;
+    [[nodiscard]] bool is_sampled(std::size_t part) const;
+    /// Calls visit for each part whose samples may lie in the box.
+    void visit_parts(const Aabb& box, FunctionRef<void(std::size_t part)> visit) const;
+
+    struct Part {
+        SurfaceSamples samples;
+        /// Within 5 spacings of the part's border, of other parts: also of such as have none yet.
+        SurfaceSamples around;
+    };
+    /// Once for each part.
+    [[nodiscard]] Part sample(std::size_t part, const Workers& workers);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
 
 } // namespace flotsam

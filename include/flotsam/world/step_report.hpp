@@ -6,7 +6,8 @@
 
 namespace flotsam {
 
-/// Seconds of wall clock per stage of a step.
+/// Seconds of wall clock per stage of a step: `bodies` has the sampling of walls that water comes near as well, and
+/// `walls`, the guard, is a part of `advance`.
 struct StageSeconds {
     double bodies = 0.0, neighbours = 0.0, density = 0.0, forces = 0.0, pressure = 0.0, advance = 0.0, walls = 0.0;
 };

@@ -251,6 +251,45 @@ TEST_CASE("far from the origin samples are as good", "[geometry][surface_samples
     check_even(query, samples, settings);
 }
 
+TEST_CASE("parts of a surface fit together whatever their order", "[geometry][surface_samples]")
+{
+    // A tank with one edge open, and a body with a fin: creases, a rim, and corners lie in some of the parts.
+    const int shape = GENERATE(0, 1, 2);
+    const bool backwards = GENERATE(false, true);
+    TriangleMesh mesh = shape == 2 ? meshes::sphere(25.0 * kD, 40) : centred_box(47.0, 23.3, 24.0);
+    if (shape == 1) {
+        std::erase_if(mesh.triangles, [&](const auto& triangle) {
+            return std::all_of(triangle.begin(), triangle.end(),
+                               [&](int v) { return mesh.vertices[static_cast<std::size_t>(v)].z() > 0.0; });
+        });
+    }
+    const SurfaceQuery query(mesh);
+    const SurfaceSampleSettings settings = at_half_spacing(shape == 2 ? Solid::inside : Solid::outside);
+    const std::size_t whole = sample_surface(query, settings).positions.size();
+    SurfaceSampler sampler(query, settings, 20.0 * kD);
+    REQUIRE(sampler.parts() == (shape == 2 ? 8u : 2u));
+    SurfaceSamples all;
+    for (std::size_t k = 0; k < sampler.parts(); ++k) {
+        const std::size_t part = backwards ? sampler.parts() - 1 - k : k;
+        CHECK_FALSE(sampler.is_sampled(part));
+        const SurfaceSampler::Part found = sampler.sample(part, Workers(2));
+        CHECK(sampler.is_sampled(part));
+        REQUIRE(found.samples.positions.size() > 100);
+        CHECK(found.samples.depth.size() == found.samples.positions.size());
+        for (const Vec3d& p : found.samples.positions) {
+            bool is_here = false;
+            const Vec3d gap = Vec3d::Constant(kD); // just beyond its border it may have filled one
+            sampler.visit_parts({p - gap, p + gap}, [&](std::size_t at) { is_here = is_here || at == part; });
+            CHECK(is_here);
+        }
+        all.positions.insert(all.positions.end(), found.samples.positions.begin(), found.samples.positions.end());
+    }
+    check_even(query, all, settings);
+    CHECK(static_cast<double>(all.positions.size()) == Approx(static_cast<double>(whole)).epsilon(0.02));
+    CHECK_THROWS_AS(sampler.sample(0, Workers(1)), std::invalid_argument);
+    CHECK_THROWS_AS(SurfaceSampler(query, settings, 5.0 * kD), std::invalid_argument);
+}
+
 TEST_CASE("the same input gives the same samples, another seed others", "[geometry][surface_samples]")
 {
     const SurfaceQuery query(centred_box(6.0, 5.0, 4.0));

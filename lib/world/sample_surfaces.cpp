@@ -1,0 +1,117 @@
+#include "world/fluid_world_impl.hpp"
+
+#include "world/boundary_calibration.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <sstream>
+
+namespace flotsam {
+
+SurfaceSampleSettings FluidWorld::Impl::sample_settings(SurfaceSampleSettings::Solid solid) const
+{
+    SurfaceSampleSettings sampling;
+    sampling.spacing = 0.7 * spacing();
+    sampling.inset = boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
+    sampling.dimensions = settings.dimensions;
+    sampling.solid = solid;
+    return sampling;
+}
+
+/// `around`: samples of the same surface that are not to be added, but count in the volumes of those that are.
+void FluidWorld::Impl::add_samples(std::size_t owner, const SurfaceSamples& samples, const SurfaceSamples& around)
+{
+    std::vector<Vec3d> positions = samples.positions;
+    std::vector<double> depths = samples.depth;
+    positions.insert(positions.end(), around.positions.begin(), around.positions.end());
+    depths.insert(depths.end(), around.depth.begin(), around.depth.end());
+    const std::vector<double> volumes =
+        sample_volumes(positions, depths, settings.kernel, spacing(), settings.dimensions);
+    for (std::size_t b = 0; b < samples.positions.size(); ++b) {
+        Vec4 position = Vec4::Zero();
+        position.head<3>() = positions[b].cast<Scalar>();
+        boundary.position.push_back(position);
+        boundary.volume.push_back(static_cast<Scalar>(volumes[b]));
+        boundary.velocity.push_back(Vec4::Zero());
+        boundary.owner.push_back(static_cast<std::int32_t>(owner));
+        boundary.position_body.push_back(positions[b]);
+    }
+}
+
+void FluidWorld::Impl::note_thin(const std::string& name, double fraction)
+{
+    if (!(fraction > 0.0)) return;
+    const double inset = boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
+    std::ostringstream note;
+    note << name << " is thinner than two layers of samples take, " << 2.0 * inset << " m, on "
+         << std::lround(100.0 * fraction) << " % of its surface: one layer of samples in its middle";
+    notes.push_back(note.str());
+}
+
+void FluidWorld::Impl::sample_body(std::size_t k)
+{
+    if (!bodies[k].query) return; // removed
+    const SurfaceSamples samples =
+        sample_surface(*bodies[k].query, sample_settings(SurfaceSampleSettings::Solid::inside), workers);
+    add_samples(walls.size() + k, samples, {});
+    note_thin(bodies[k].name, samples.thin_fraction);
+}
+
+void FluidWorld::Impl::sample_surfaces()
+{
+    for (std::size_t k = 0; k < walls.size(); ++k) prepare_wall_samples(k);
+    for (std::size_t k = 0; k < bodies.size(); ++k) sample_body(k);
+}
+
+/// A wall gets samples where water comes near: in parts of 32 to 64 spacings, since sampling costs the more the larger
+/// the surface, and in memory as well.
+void FluidWorld::Impl::prepare_wall_samples(std::size_t k)
+{
+    constexpr double kPart = 32.0; // spacings
+    using Solid = SurfaceSampleSettings::Solid;
+    Wall& wall = walls[k];
+    const Solid solid = wall.side == WallSide::inside    ? Solid::outside
+                        : wall.side == WallSide::outside ? Solid::inside
+                                                         : Solid::both;
+    const SurfaceSampleSettings sampling = sample_settings(solid);
+    if (settings.dimensions == 3) {
+        wall.sampler = std::make_unique<SurfaceSampler>(*wall.query, sampling, kPart * spacing());
+        return;
+    }
+    const SurfaceSamples samples = sample_surface(*wall.query, sampling, workers);
+    add_samples(k, samples, {});
+    note_thin(wall.name, samples.thin_fraction);
+}
+
+void FluidWorld::Impl::sample_walls_in_reach()
+{
+    const double reach = support() + boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+        if (!walls[k].sampler) continue;
+        SurfaceSampler& sampler = *walls[k].sampler;
+        const Aabb bounds = walls[k].query->bounds().inflated(reach);
+        reached_parts.assign(sampler.parts(), 0);
+        workers.for_each(fluid.size(), [&](std::size_t i) {
+            const Vec3d at = fluid.position[i].head<3>().cast<double>();
+            if (!bounds.contains(at)) return; // and what is not finite
+            sampler.visit_parts({at - Vec3d::Constant(reach), at + Vec3d::Constant(reach)}, [&](std::size_t part) {
+                std::atomic_ref(reached_parts[part]).store(1, std::memory_order_relaxed);
+            });
+        });
+        bool is_left = false;
+        for (std::size_t part = 0; part < sampler.parts(); ++part) {
+            if (sampler.is_sampled(part)) continue;
+            if (reached_parts[part] == 0) {
+                is_left = true;
+                continue;
+            }
+            const SurfaceSampler::Part found = sampler.sample(part, workers);
+            add_samples(k, found.samples, found.around);
+            if (!walls[k].is_noted_thin) note_thin(walls[k].name, found.samples.thin_fraction);
+            walls[k].is_noted_thin = walls[k].is_noted_thin || found.samples.thin_fraction > 0.0;
+        }
+        if (!is_left) walls[k].sampler.reset();
+    }
+}
+
+} // namespace flotsam
