@@ -102,8 +102,10 @@ TEST_CASE("a spacing that memory cannot hold is refused with one that fits", "[s
     check_refused(kCrate, {"particle_spacing=1e-6"}, {"particle_spacing 1e-06", "particles", "GB", "or more fits"});
     check_refused(kRaft, {"particle_spacing=1e-9"}, {"particle_spacing 1e-09", "or more fits"});
     check_refused(kCrate, {"particle_spacing=1e-300"}, {"about inf particles", "or more fits"});
-    check_refused(kCrate, {"particle_spacing=1e-3", "walls.0.box.max=[1000,1000,1]"},
-                  {"or is walls[0], 1e+03 x 1e+03 x 1 m, too large?"});
+    check_refused(kCrate, {"particle_spacing=1e-3"}, {"or is a block of fluid, 1 x 1 x 0.4 m, too large?"});
+    // A wall that no water comes near takes none.
+    CHECK(checked(kCrate, {"walls.0.box.max=[1000,1000,1]"}).memory_bytes ==
+          Approx(checked(kCrate, {"walls.0.box.max=[100,100,1]"}).memory_bytes));
 }
 
 TEST_CASE("a body too small for the particles is refused", "[scene]")
