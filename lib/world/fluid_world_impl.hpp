@@ -175,6 +175,7 @@ struct FluidWorld::Impl {
     void sample_surfaces();
     void sample_body(std::size_t k);
     void prepare_wall_samples(std::size_t k);
+    void find_reached_parts(const Wall& wall);
     void sample_walls_in_reach();
     [[nodiscard]] SurfaceSampleSettings sample_settings(SurfaceSampleSettings::Solid solid) const;
     void add_samples(std::size_t owner, const SurfaceSamples& samples, const SurfaceSamples& around);

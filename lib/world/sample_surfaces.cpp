@@ -83,34 +83,54 @@ void FluidWorld::Impl::prepare_wall_samples(std::size_t k)
     note_thin(wall.name, samples.thin_fraction);
 }
 
-void FluidWorld::Impl::sample_walls_in_reach()
+/// Sets reached_parts: which of a wall's parts may have samples within reach of a particle.
+void FluidWorld::Impl::find_reached_parts(const Wall& wall)
 {
     const double reach = support() + boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
-    for (std::size_t k = 0; k < walls.size(); ++k) {
-        if (!walls[k].sampler) continue;
-        SurfaceSampler& sampler = *walls[k].sampler;
-        const Aabb bounds = walls[k].query->bounds().inflated(reach);
-        reached_parts.assign(sampler.parts(), 0);
-        workers.for_each(fluid.size(), [&](std::size_t i) {
-            const Vec3d at = fluid.position[i].head<3>().cast<double>();
-            if (!bounds.contains(at)) return; // and what is not finite
-            sampler.visit_parts({at - Vec3d::Constant(reach), at + Vec3d::Constant(reach)}, [&](std::size_t part) {
+    const SurfaceSampler& sampler = *wall.sampler;
+    const Aabb bounds = wall.query->bounds().inflated(reach);
+    reached_parts.assign(sampler.parts(), 0);
+    const auto in_reach = [&](const Vec4& low, const Vec4& high) {
+        return Aabb{low.head<3>().cast<double>(), high.head<3>().cast<double>()}.inflated(reach);
+    };
+    workers.for_chunks(fluid.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+        Vec4 low = fluid.position[begin], high = low; // particles of a chunk are neighbours, most often
+        for (std::size_t i = begin; i < end; ++i) {
+            low = low.cwiseMin(fluid.position[i]);
+            high = high.cwiseMax(fluid.position[i]);
+        }
+        bool is_new = !(low.array() <= high.array()).all(); // not finite
+        if (!is_new) sampler.visit_parts(in_reach(low, high), [&](std::size_t p) { is_new |= !sampler.is_sampled(p); });
+        if (!is_new) return;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec4& at = fluid.position[i];
+            if (!bounds.contains(at.head<3>().cast<double>())) continue; // nor what is not finite
+            sampler.visit_parts(in_reach(at, at), [&](std::size_t part) {
                 std::atomic_ref(reached_parts[part]).store(1, std::memory_order_relaxed);
             });
-        });
+        }
+    });
+}
+
+void FluidWorld::Impl::sample_walls_in_reach()
+{
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+        Wall& wall = walls[k];
+        if (!wall.sampler) continue;
+        find_reached_parts(wall);
         bool is_left = false;
-        for (std::size_t part = 0; part < sampler.parts(); ++part) {
-            if (sampler.is_sampled(part)) continue;
+        for (std::size_t part = 0; part < wall.sampler->parts(); ++part) {
+            if (wall.sampler->is_sampled(part)) continue;
             if (reached_parts[part] == 0) {
                 is_left = true;
                 continue;
             }
-            const SurfaceSampler::Part found = sampler.sample(part, workers);
+            const SurfaceSampler::Part found = wall.sampler->sample(part, workers);
             add_samples(k, found.samples, found.around);
-            if (!walls[k].is_noted_thin) note_thin(walls[k].name, found.samples.thin_fraction);
-            walls[k].is_noted_thin = walls[k].is_noted_thin || found.samples.thin_fraction > 0.0;
+            if (!wall.is_noted_thin) note_thin(wall.name, found.samples.thin_fraction);
+            wall.is_noted_thin = wall.is_noted_thin || found.samples.thin_fraction > 0.0;
         }
-        if (!is_left) walls[k].sampler.reset();
+        if (!is_left) wall.sampler.reset();
     }
 }
 

@@ -86,21 +86,32 @@ void Viscosity::add_at_boundaries(const ViscositySettings& settings, double dt, 
         if (reactions.capacity() == 0) reactions.reserve(16); // owners that the particles of a chunk touch
         for (std::size_t i = begin; i < end; ++i) {
             Vec4 change = Vec4::Zero();
+            std::int32_t owner = -1; // of the samples under way, of which a particle's are mostly
+            Vec3 center = Vec3::Zero(), pushed = Vec3::Zero(), turned = Vec3::Zero();
+            const auto hand_over = [&] {
+                if (owner < 0) return;
+                auto reaction = std::find_if(reactions.begin(), reactions.end(),
+                                             [&](const Reaction& r) { return r.owner == owner; });
+                if (reaction == reactions.end()) reaction = reactions.insert(reaction, {owner, {}});
+                reaction->impulse +=
+                    {-fluid.particle_mass * pushed.cast<double>(), -fluid.particle_mass * turned.cast<double>()};
+                pushed = turned = Vec3::Zero();
+            };
             for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
                 const std::uint32_t b = pairs.index[k];
                 const Vec4 x = fluid.position[i] - boundary.position[b];
                 const Scalar pull = x.dot(fluid.velocity[i] - boundary.velocity[b]) / (x.squaredNorm() + soft);
                 const Vec4 part = (factor * boundary.volume[b] * pull * pairs.slope[k]) * x;
                 change += part;
-                const std::int32_t owner = boundary.owner[b];
-                auto reaction = std::find_if(reactions.begin(), reactions.end(),
-                                             [&](const Reaction& r) { return r.owner == owner; });
-                if (reaction == reactions.end()) reaction = reactions.insert(reaction, {owner, {}});
-                const Vec3d impulse = -fluid.particle_mass * part.head<3>().cast<double>();
-                const Vec3d arm =
-                    boundary.position[b].head<3>().cast<double>() - centers[static_cast<std::size_t>(owner)];
-                reaction->impulse += {impulse, arm.cross(impulse)};
+                if (boundary.owner[b] != owner) {
+                    hand_over();
+                    owner = boundary.owner[b];
+                    center = centers[static_cast<std::size_t>(owner)].cast<Scalar>();
+                }
+                pushed += part.head<3>();
+                turned += Vec3(boundary.position[b].head<3>() - center).cross(Vec3(part.head<3>()));
             }
+            hand_over();
             velocity[i] += change;
         }
     });
