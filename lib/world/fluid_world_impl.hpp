@@ -117,10 +117,10 @@ struct FluidWorld::Impl {
     std::vector<Wrench> total;   ///< of each owner over the last step [N s]
     std::vector<Wrench> offered; ///< total and pushed, while joints and contacts are asked about them [N s]
     std::vector<Vec4> predicted;
-    std::vector<Vec4> change, shift, new_velocity; ///< scratch of sorting and of the forces until they are written
+    std::vector<Vec4> shift, new_velocity;    ///< scratch of sorting and of the forces until they are written
     std::vector<Vec4> new_position;           ///< between steps: where the particles were when the pairs were found
-    PressureSystem::Scratch pressure_scratch; ///< its unknowns are the forces' scratch before
-    std::vector<Scalar> multiplier, shift_multiplier, source, diagonal, fluid_diagonal;
+    PressureSystem::Scratch pressure_scratch; ///< the forces' before; change: by pressure [m/s]
+    std::vector<Scalar> multiplier, source, diagonal, fluid_diagonal;
     std::vector<Eigen::Matrix<double, 6, 6>> mobility;
     std::vector<Scalar> sort_scalar;
     std::vector<std::uint32_t> sort_id;

@@ -28,7 +28,7 @@ LedgerSums& LedgerSums::operator+=(const LedgerSums& other)
 /// to the bit, so that particles that it left alone give nothing to its sum.
 LedgerSums FluidWorld::Impl::ledger_terms(std::size_t i, double dt) const
 {
-    const Vec4 sum = predicted[i] + change[i];
+    const Vec4 sum = predicted[i] + pressure_scratch.change[i];
     const Vec4 place = fluid.position[i] + shift[i] + static_cast<Scalar>(dt) * sum;
     const auto wide = [](const Vec4& v) { return Vec3d(v.head<3>().cast<double>()); };
     const Vec3d before = wide(fluid.velocity[i]), advanced = wide(sum), after = wide(new_velocity[i]);
@@ -47,7 +47,7 @@ LedgerSums FluidWorld::Impl::ledger_terms(std::size_t i, double dt) const
     t.speed_sq_before = before.squaredNorm();
     t.speed_sq_after = after.squaredNorm();
     t.viscous = (wide(predicted[i]) - before - dt * settings.gravity).dot(mean);
-    t.pressure = wide(change[i]).dot(mean);
+    t.pressure = wide(pressure_scratch.change[i]).dot(mean);
     t.guard = (after - advanced).dot(mean);
     return t;
 }

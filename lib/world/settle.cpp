@@ -72,7 +72,8 @@ double FluidWorld::Impl::settle_round(double dt, Bodies& held)
     new_velocity.resize(n);
     workers.for_each(n, [&](std::size_t i) {
         const bool stays = placed[fluid.id[i]] != 0;
-        new_velocity[i] = stays || !is_carried(i) ? Vec4(Vec4::Zero()) : Vec4(predicted[i] + change[i]);
+        new_velocity[i] =
+            stays || !is_carried(i) ? Vec4(Vec4::Zero()) : Vec4(predicted[i] + pressure_scratch.change[i]);
         new_position[i] = fluid.position[i];
         if (!stays) new_position[i] += shift[i] + static_cast<Scalar>(dt) * new_velocity[i];
         new_position[i][3] = 0;

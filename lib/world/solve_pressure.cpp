@@ -72,7 +72,7 @@ SolveResult FluidWorld::Impl::solve_shift(const PressureSystem& system)
     const Scalar rho0 = static_cast<Scalar>(settings.rest_density);
     source.resize(n);
     shift.assign(n, Vec4::Zero());
-    shift_multiplier.assign(n, Scalar(0));
+    multiplier.assign(n, Scalar(0)); // of the shift, until the velocities are solved for
     workers.for_each(n, [&](std::size_t i) { source[i] = fluid.density[i] - rho0; });
     pressure_operator.bind(system, nullptr, owners());
     SolveGoal goal;
@@ -80,8 +80,8 @@ SolveResult FluidWorld::Impl::solve_shift(const PressureSystem& system)
     goal.tolerance = settings.pressure.tolerance;
     goal.max_iterations = std::min(kMostShiftIterations, settings.pressure.max_iterations);
     goal.min_iterations = 0;
-    SolveResult result = solver().solve(pressure_operator, source, fluid_diagonal, goal, shift_multiplier);
-    system.velocity_change(shift_multiplier, shift);
+    SolveResult result = solver().solve(pressure_operator, source, fluid_diagonal, goal, multiplier);
+    system.velocity_change(multiplier, shift);
     // The system is linear in the shift only for a fraction of a spacing.
     const Scalar longest = static_cast<Scalar>(0.1 * spacing());
     workers.for_each(n, [&](std::size_t i) {
@@ -167,8 +167,7 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
     }
     report.converged = report.converged && !again;
 
-    change.resize(n);
-    system.velocity_change(multiplier, change);
+    system.velocity_change(multiplier, pressure_scratch.change);
     for (std::size_t k = 0; k < owners(); ++k) total[k] += pushed[k];
     const Scalar inv_dt = static_cast<Scalar>(1.0 / dt);
     workers.for_each(

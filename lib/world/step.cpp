@@ -149,7 +149,7 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
     workers.for_each(fluid.size(), [&](std::size_t i) { predicted[i] = fluid.velocity[i] + gravity_step; });
     report.gravity_impulse = settings.gravity * (dt * fluid.particle_mass * static_cast<double>(fluid.size()));
     total.assign(owners(), Wrench{});
-    const ForceScratch scratch{&change, &shift, &new_velocity, &pressure_scratch.unknowns};
+    const ForceScratch scratch{&pressure_scratch.change, &shift, &new_velocity, &pressure_scratch.unknowns};
     if (settings.kinematic_viscosity > 0.0 || settings.dissipation > 0.0) {
         const ViscositySettings viscous{settings.kinematic_viscosity, settings.dissipation, spacing(),
                                         settings.rest_density, settings.dimensions};
@@ -189,7 +189,7 @@ void FluidWorld::Impl::advance(double dt, Bodies& port, StepReport& report)
     new_position.resize(n);
     new_velocity.resize(n);
     workers.for_each(n, [&](std::size_t i) {
-        new_velocity[i] = predicted[i] + change[i];
+        new_velocity[i] = predicted[i] + pressure_scratch.change[i];
         new_position[i] = fluid.position[i] + shift[i] + step_size * new_velocity[i];
         new_position[i][3] = 0;
     });

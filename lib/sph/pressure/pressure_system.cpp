@@ -25,6 +25,7 @@ PressureSystem::PressureSystem(const Pairs& pairs, std::span<const Vec4> positio
     std::vector<Vec4>&unknowns = scratch.unknowns, &own = scratch.own_gradient;
     unknowns.assign(position.begin(), position.end());
     own.resize(size());
+    scratch.change.resize(size());
     const Vec4 factor(mass_, mass_, mass_, mass_ * mass_);
     workers.for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
         simd::sum_gradient_squares(pairs, unknowns, begin, end, own);
@@ -153,7 +154,6 @@ void PressureOperator::bind(const PressureSystem& system, const OwnerResponse* r
     system_ = &system;
     response_ = response;
     preconditioner_ = nullptr;
-    velocity_change_.resize(system.size());
     impulses_.resize(owners);
     twists_.assign(owners, Twist{});
 }
@@ -162,11 +162,11 @@ void PressureOperator::apply(PressureSystem::Give give, Take take)
 {
     const PressureSystem& system = *system_;
     const Workers& workers = system.workers();
-    system.velocity_change(give, velocity_change_);
+    system.velocity_change(give, system.change());
     if (response_ == nullptr) {
         workers.for_chunks(system.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
             std::array<Scalar, Workers::kChunk> product;
-            system.density_rate(velocity_change_, begin, end, product);
+            system.density_rate(system.change(), begin, end, product);
             for (std::size_t k = 0; k < end - begin; ++k) product[k] = -product[k];
             take(chunk, begin, end, std::span<const Scalar>(product).first(end - begin));
         });
@@ -175,7 +175,7 @@ void PressureOperator::apply(PressureSystem::Give give, Take take)
     system.impulses(impulses_);
     (*response_)(impulses_, twists_);
     product_.resize(system.size());
-    system.density_rate(velocity_change_, twists_, product_);
+    system.density_rate(system.change(), twists_, product_);
     workers.for_chunks(system.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) product_[i] = -product_[i];
         take(chunk, begin, end, std::span<const Scalar>(product_).subspan(begin, end - begin));

@@ -37,6 +37,7 @@ class PressureSystem {
     struct Scratch {
         std::vector<Vec4> unknowns;     ///< positions [m], and x of the last velocity_change as fourth components
         std::vector<Vec4> own_gradient; ///< sum_j m grad W_ij + sum_b rho0 V_b grad W_ib, and sum_j |m grad W_ij|^2
+        std::vector<Vec4> change;       ///< dv of the last product [m/s]; as many as particles
         std::vector<Slice> slices;
         std::vector<Eigen::Matrix<double, 6, 1>> sums; ///< of the slices
     };
@@ -54,6 +55,9 @@ class PressureSystem {
 
     /// x of each particle in the last velocity_change.
     [[nodiscard]] Scalar unknown(std::size_t i) const { return scratch_->unknowns[i][3]; }
+
+    /// Room for a dv, of the scratch.
+    [[nodiscard]] std::span<Vec4> change() const { return scratch_->change; }
 
     /// dv of each particle for multipliers x.
     void velocity_change(Give give, std::span<Vec4> dv) const;
@@ -116,7 +120,6 @@ class PressureOperator {
     const PressureSystem* system_ = nullptr;
     const OwnerResponse* response_ = nullptr;
     ResponsePreconditioner* preconditioner_ = nullptr;
-    std::vector<Vec4> velocity_change_;
     std::vector<Scalar> product_; ///< where owners respond
     std::vector<Wrench> impulses_;
     std::vector<Twist> twists_;
