@@ -26,7 +26,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // a row's end.
 #if HWY_TARGET == HWY_SCALAR
 inline constexpr std::size_t kLanes = 1;
-#elif HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON
+#elif HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_EMU128
 inline constexpr std::size_t kLanes = 4;
 #else
 inline constexpr std::size_t kLanes = 8;
@@ -65,7 +65,7 @@ HWY_INLINE V4 load_transposed(const Vec4* points, const std::uint32_t* index)
     const hn::FixedTag<float, 4> four;
     const auto load = [&](int lane) FLOTSAM_INLINE {
         const auto low = hn::Load(four, at(points, index[lane]));
-#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON
+#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_EMU128
         return low;
 #else
         return hn::Combine(d, hn::Load(four, at(points, index[lane + 4])), low);

@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace flotsam::simd::HWY_NAMESPACE {
 
 /// For each mask, the lanes that it has, rising, and then any.
-constexpr auto kCompressed = [] {
+[[maybe_unused]] constexpr auto kCompressed = [] {
     std::array<std::array<std::int32_t, kLanes>, std::size_t{1} << kLanes> table{};
     for (std::size_t mask = 0; mask < table.size(); ++mask) {
         std::size_t count = 0;
