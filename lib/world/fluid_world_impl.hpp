@@ -177,6 +177,7 @@ struct FluidWorld::Impl {
     void prepare_wall_samples(std::size_t k);
     void find_reached_parts(const Wall& wall);
     void sample_walls_in_reach();
+    [[nodiscard]] double sample_inset() const;
     [[nodiscard]] SurfaceSampleSettings sample_settings(SurfaceSampleSettings::Solid solid) const;
     void add_samples(std::size_t owner, const SurfaceSamples& samples, const SurfaceSamples& around);
     void note_thin(const std::string& name, double fraction);

@@ -8,11 +8,16 @@
 
 namespace flotsam {
 
+double FluidWorld::Impl::sample_inset() const
+{
+    return boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
+}
+
 SurfaceSampleSettings FluidWorld::Impl::sample_settings(SurfaceSampleSettings::Solid solid) const
 {
     SurfaceSampleSettings sampling;
     sampling.spacing = 0.7 * spacing();
-    sampling.inset = boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
+    sampling.inset = sample_inset();
     sampling.dimensions = settings.dimensions;
     sampling.solid = solid;
     return sampling;
@@ -41,9 +46,8 @@ void FluidWorld::Impl::add_samples(std::size_t owner, const SurfaceSamples& samp
 void FluidWorld::Impl::note_thin(const std::string& name, double fraction)
 {
     if (!(fraction > 0.0)) return;
-    const double inset = boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
     std::ostringstream note;
-    note << name << " is thinner than two layers of samples take, " << 2.0 * inset << " m, on "
+    note << name << " is thinner than two layers of samples take, " << 2.0 * sample_inset() << " m, on "
          << std::lround(100.0 * fraction) << " % of its surface: one layer of samples in its middle";
     notes.push_back(note.str());
 }
@@ -86,7 +90,7 @@ void FluidWorld::Impl::prepare_wall_samples(std::size_t k)
 /// Sets reached_parts: which of a wall's parts may have samples within reach of a particle.
 void FluidWorld::Impl::find_reached_parts(const Wall& wall)
 {
-    const double reach = support() + boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
+    const double reach = support() + sample_inset();
     const SurfaceSampler& sampler = *wall.sampler;
     const Aabb bounds = wall.query->bounds().inflated(reach);
     reached_parts.assign(sampler.parts(), 0);

@@ -63,11 +63,7 @@ void PressureSystem::velocity_change(Give give, std::span<Vec4> dv) const
 
 void PressureSystem::velocity_change(std::span<const Scalar> x, std::span<Vec4> dv) const
 {
-    velocity_change(
-        [&](std::size_t begin, std::size_t end, std::span<Vec4> unknowns) {
-            for (std::size_t i = begin; i < end; ++i) unknowns[i][3] = x[i];
-        },
-        dv);
+    velocity_change(GiveValues{x}, dv);
 }
 
 void PressureSystem::density_rate(std::span<const Vec4> velocity, std::size_t begin, std::size_t end,
@@ -184,13 +180,10 @@ void PressureOperator::apply(PressureSystem::Give give, Take take)
 
 void PressureOperator::apply(std::span<const Scalar> x, std::span<Scalar> out)
 {
-    apply(
-        [&](std::size_t begin, std::size_t end, std::span<Vec4> unknowns) {
-            for (std::size_t i = begin; i < end; ++i) unknowns[i][3] = x[i];
-        },
-        [&](std::size_t, std::size_t begin, std::size_t, std::span<const Scalar> product) {
-            std::copy(product.begin(), product.end(), out.begin() + static_cast<std::ptrdiff_t>(begin));
-        });
+    apply(PressureSystem::GiveValues{x},
+          [&](std::size_t, std::size_t begin, std::size_t, std::span<const Scalar> product) {
+              std::copy(product.begin(), product.end(), out.begin() + static_cast<std::ptrdiff_t>(begin));
+          });
 }
 
 } // namespace flotsam

@@ -43,6 +43,14 @@ class PressureSystem {
     };
     /// Writes for each particle i of [begin, end) its unknown into unknowns[i].w.
     using Give = FunctionRef<void(std::size_t begin, std::size_t end, std::span<Vec4> unknowns)>;
+    /// Gives the values of an array.
+    struct GiveValues {
+        std::span<const Scalar> x;
+        void operator()(std::size_t begin, std::size_t end, std::span<Vec4> unknowns) const
+        {
+            for (std::size_t i = begin; i < end; ++i) unknowns[i][3] = x[i];
+        }
+    };
 
     /// `position`: of the particles, as the pairs were found [m].
     PressureSystem(const Pairs& pairs, std::span<const Vec4> position, const Contacts& contacts, double particle_mass,

@@ -48,11 +48,7 @@ SolveResult SpectralGradient::solve(PressureOperator& op, std::span<const Scalar
     };
     SolveResult result;
     if (pressed > 0.0) {
-        op.apply(
-            [&](std::size_t begin, std::size_t end, std::span<Vec4> unknowns) {
-                for (std::size_t i = begin; i < end; ++i) unknowns[i][3] = x[i];
-            },
-            start);
+        op.apply(PressureSystem::GiveValues{x}, start);
         ++result.products;
     } else {
         workers.for_chunks(n, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
