@@ -168,6 +168,8 @@ struct FluidWorld::Impl {
     void cut_and_place_fluid();
     void relax(int max_rounds);
     void guard_relaxation();
+    [[nodiscard]] bool is_overfull();
+    void loosen_enclosed_water();
     [[nodiscard]] bool in_solid(const Vec3d& point) const;
     [[nodiscard]] bool in_body(std::size_t k, const Pose& pose, const Vec3d& point) const;
 

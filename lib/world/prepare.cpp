@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 namespace flotsam {
 namespace {
+
+constexpr int kRelaxingRounds = 60; ///< at most, at the start
 
 /// Inside the closed sides of a box wall: open ones do not bound.
 bool inside_box_wall(const Wall& wall, const Vec3d& p, int dimensions)
@@ -41,6 +44,8 @@ void FluidWorld::Impl::prepare(Bodies& port, const std::function<void(const Sett
     if (prepared) return;
     prepared = true;
     read_bodies(settings.max_time_step, port);
+    for (const BodyState& state : states)
+        max_speed = std::max({max_speed, state.start.linear.norm(), state.predicted.linear.norm()});
     choose_wall_sides();
     cut_and_place_fluid();
     find_deepest_catch();
@@ -52,7 +57,8 @@ void FluidWorld::Impl::prepare(Bodies& port, const std::function<void(const Sett
     for (const BodySurface& body : bodies) surfaces.push_back({body.query.get(), false, true});
     guard.build(surfaces, spacing(), workers);
     place_body_samples();
-    relax(60);
+    relax(kRelaxingRounds);
+    loosen_enclosed_water();
     if (settings.start == FluidWorldSettings::Start::at_rest) settle(on_round);
 }
 
@@ -167,7 +173,7 @@ void FluidWorld::Impl::relax(int max_rounds)
         find_neighbours();
         measure_density(ignored);
         if (ignored.compression_mean <= 0.5 * settings.pressure.tolerance && ignored.compression_max < 0.01) break;
-        static_cast<void>(solve_shift(pressure_system()));
+        if (solve_shift(pressure_system()).iterations == 0) break;
         new_position.resize(fluid.size());
         workers.for_each(fluid.size(), [&](std::size_t i) {
             new_position[i] = fluid.position[i];
@@ -176,6 +182,53 @@ void FluidWorld::Impl::relax(int max_rounds)
         guard_relaxation();
         fluid.position.swap(new_position);
     }
+}
+
+/// Whether solids enclose more water than has room: the density stays too high, or so even that nothing gives way, and
+/// there is no free surface, where some particles would have less than the rest density.
+bool FluidWorld::Impl::is_overfull()
+{
+    if (fluid.size() == 0) return false;
+    StepReport measured;
+    find_neighbours();
+    measure_density(measured);
+    const auto part_below = [&](double share) {
+        const Scalar limit = static_cast<Scalar>(share * settings.rest_density);
+        const auto count =
+            std::count_if(fluid.density.begin(), fluid.density.end(), [&](Scalar d) { return d < limit; });
+        return static_cast<double>(count) / static_cast<double>(fluid.size());
+    };
+    if (measured.compression_mean > 2.0 * settings.pressure.tolerance) return part_below(0.97) < 0.01;
+    return part_below(0.97) < 0.001 && part_below(0.99) < 0.01;
+}
+
+/// A lattice that fills a closed tank to the last particle is too dense by a few thousandths, which no pressure takes
+/// out of it: pressure would grow without bound. Particles are taken away at the top until the rest has room.
+void FluidWorld::Impl::loosen_enclosed_water()
+{
+    constexpr std::size_t kParts = 400; // one of so many at a time
+    const std::size_t all = fluid.size();
+    const Vec3d up = settings.gravity.norm() > 0.0 ? Vec3d(-settings.gravity.normalized()) : Vec3d::UnitZ();
+    std::vector<std::uint32_t> highest;
+    while (20 * (all - fluid.size()) < all && is_overfull()) {
+        highest.resize(fluid.size());
+        std::iota(highest.begin(), highest.end(), std::uint32_t(0));
+        const auto height = [&](std::uint32_t i) { return up.dot(fluid.position[i].head<3>().cast<double>()); };
+        const std::size_t count = 1 + fluid.size() / kParts;
+        std::partial_sort(highest.begin(), highest.begin() + static_cast<std::ptrdiff_t>(count), highest.end(),
+                          [&](std::uint32_t a, std::uint32_t b) { return height(a) > height(b); });
+        highest.resize(count);
+        std::sort(highest.begin(), highest.end());
+        StepReport ignored;
+        remove_particles(highest, ignored);
+        relax(kRelaxingRounds);
+    }
+    if (fluid.size() == all) return;
+    std::ostringstream note;
+    note << all - fluid.size() << " of " << all
+         << " fluid particles found no room between walls and bodies that enclose"
+         << " the water, and were taken away at the top";
+    notes.push_back(note.str());
 }
 
 void FluidWorld::Impl::guard_relaxation()

@@ -392,6 +392,40 @@ TEST_CASE("the allowed step follows speed, viscosity and the given bound", "[wor
     NoBodies none;
     fluid.prepare(none);
     CHECK(fluid.allowed_time_step() == Approx(s.cfl * kSpacing / 10.0));
+
+    FluidWorld below = tank(s); // a body that is fast from the start counts in the first step
+    below.add_body(tessellate(DiscShape{0.05}, kSpacing));
+    FreeBody disc;
+    disc.pose.position = Vec3d(0.2, 0, 0.5);
+    disc.momentum = Vec3d(0, 0, -20.0);
+    FreeBodies bodies({disc});
+    below.prepare(bodies);
+    CHECK(below.allowed_time_step() == Approx(s.cfl * kSpacing / 20.0));
+}
+
+TEST_CASE("a closed tank that is filled to the last particle holds together", "[world]")
+{
+    const Vec3d gravity = GENERATE(Vec3d(0, 0, -9.81), Vec3d(0, 0, 0));
+    const KernelKind kernel = GENERATE(KernelKind::quintic, KernelKind::cubic);
+    FluidWorldSettings s = plane();
+    s.gravity = gravity;
+    s.kernel = kernel;
+    FluidWorld fluid(s);
+    const Aabb inside{Vec3d(0, -0.1, 0), Vec3d(1.0, 0.1, 0.6)};
+    fluid.add_box_wall(inside, {});
+    fluid.add_block(inside);
+    NoBodies none;
+    double compression = 0.0, fastest = 0.0;
+    while (fluid.time() < 0.3) {
+        const StepReport report = fluid.step(fluid.allowed_time_step(), none);
+        compression = std::max(compression, report.compression_mean);
+        fastest = std::max(fastest, report.max_speed);
+    }
+    CHECK(fluid.fluid().size() >= 1500 - 15);
+    CHECK(compression < 0.002);
+    CHECK(fastest < 0.5);
+    REQUIRE(fluid.notes().size() == 1);
+    CHECK(fluid.notes()[0].find("of 1500 fluid particles found no room") != std::string::npos);
 }
 
 TEST_CASE("water that falls out over an open side is removed and booked, and holds no step up", "[world]")
