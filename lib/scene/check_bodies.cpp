@@ -1,3 +1,4 @@
+#include "scene/inner_points.hpp"
 #include "scene/prepared_scene.hpp"
 #include "scene/refuse.hpp"
 
@@ -17,6 +18,7 @@ struct PlacedBody {
     Pose pose;
     SurfaceQuery query;         ///< in the body's frame
     std::vector<Vec3d> surface; ///< world points about a spacing apart
+    std::vector<Vec3d> inside;  ///< world points well below it
     Aabb reach;                 ///< of the surface, in the world
 
     /// In 2-D, where bodies are a metre long in y, all points are moved into the plane, far from the ends.
@@ -27,6 +29,10 @@ struct PlacedBody {
             surface.push_back(pose.to_world(vertex));
             reach.extend(surface.back());
             if (scene.dimensions == 2) surface.back().y() = 0.0;
+        }
+        for (const Vec3d& point : inner_points(query, kTouching * scene.particle_spacing)) {
+            inside.push_back(pose.to_world(point));
+            if (scene.dimensions == 2) inside.back().y() = 0.0;
         }
     }
     [[nodiscard]] double depth(const Vec3d& point) const // inside the body, else negative
@@ -95,26 +101,16 @@ double wall_in_body(const TriangleMesh& wall, const PlacedBody& body, double spa
     return deepest;
 }
 
-/// Points spread evenly over a box, none on its sides.
-void add_grid(const Aabb& box, std::vector<Vec3d>& points)
-{
-    constexpr int kPerAxis = 8;
-    for (int n = 0; n < kPerAxis * kPerAxis * kPerAxis; ++n) {
-        const Vec3d fraction(n % kPerAxis + 0.5, n / kPerAxis % kPerAxis + 0.5, n / kPerAxis / kPerAxis + 0.5);
-        points.push_back(box.min + (box.size().array() * fraction.array() / kPerAxis).matrix());
-    }
-}
-
 /// Whether the water is inside a closed wall: asked of points of the fluid.
 bool holds_the_fluid(const SceneFile& scene, const PreparedScene& prepared, const SurfaceQuery& wall)
 {
     std::vector<Vec3d> points;
-    for (const SceneBlock& block : prepared.blocks) add_grid(block.box, points);
+    for (const SceneBlock& block : prepared.blocks) {
+        const std::vector<Vec3d> of_block = grid_in(block.box);
+        points.insert(points.end(), of_block.begin(), of_block.end());
+    }
     for (const TriangleMesh& mesh : prepared.fluid_meshes) { // its vertices may lie on the wall
-        std::vector<Vec3d> filled;
-        add_grid(bounds(mesh), filled);
-        const SurfaceQuery query(mesh);
-        std::erase_if(filled, [&](const Vec3d& point) { return !query.inside(point); });
+        const std::vector<Vec3d> filled = inner_points(SurfaceQuery(mesh), 0.0);
         points.insert(points.end(), filled.begin(), filled.end());
     }
     if (scene.dimensions == 2)
@@ -175,8 +171,10 @@ void check_obstacle(const SceneFile& scene, const Tank& tank, const PlacedBody& 
 {
     double depth = tank.settings->mesh ? wall_in_body(tank.wall->mesh, body, scene.particle_spacing) : -1.0;
     if (tank.closed && !tank.holds_water && tank.settings->side != WallSide::both)
-        for (const Vec3d& point : body.surface)
-            if (tank.closed->bounds().contains(point)) depth = std::max(depth, -tank.closed->signed_distance(point));
+        for (const std::vector<Vec3d>* points : {&body.surface, &body.inside})
+            for (const Vec3d& point : *points)
+                if (tank.closed->bounds().contains(point))
+                    depth = std::max(depth, -tank.closed->signed_distance(point));
     if (depth > tolerance) refuse(scene, body.name, " overlaps " + tank.wall->name + " by " + millimetres(depth));
 }
 
@@ -209,8 +207,10 @@ void check_walls(const SceneFile& scene, const PreparedScene& prepared, const st
 void check_pair(const SceneFile& scene, const PlacedBody& a, const PlacedBody& b, double tolerance)
 {
     double depth = -1.0;
-    for (const Vec3d& point : a.surface) depth = std::max(depth, b.depth(point));
-    for (const Vec3d& point : b.surface) depth = std::max(depth, a.depth(point));
+    for (const std::vector<Vec3d>* points : {&a.surface, &a.inside})
+        for (const Vec3d& point : *points) depth = std::max(depth, b.depth(point));
+    for (const std::vector<Vec3d>* points : {&b.surface, &b.inside})
+        for (const Vec3d& point : *points) depth = std::max(depth, a.depth(point));
     if (depth > tolerance) refuse(scene, a.name, " overlaps " + b.name + " by " + millimetres(depth));
 }
 

@@ -182,10 +182,11 @@ void float_bodies(const SceneFile& scene, PreparedScene& prepared)
     Touching touching(scene, prepared);
     for (std::size_t k = 0; k < prepared.bodies.size(); ++k) {
         const PreparedBody& body = prepared.bodies[k];
-        const bool floats = body.mass < scene.fluid.density * body.volume;
-        if (scene.bodies[k].motion != SceneBody::Motion::dynamic || !floats) continue;
+        if (scene.bodies[k].motion != SceneBody::Motion::dynamic) continue;
         const Pose given = body.start;
-        const std::string obstacle = float_body(k, scene, prepared, touching);
+        const bool floats = body.mass < scene.fluid.density * body.volume;
+        const std::string obstacle =
+            floats ? float_body(k, scene, prepared, touching) : "it is not lighter than the water";
         const std::string note = note_of_move(body, given, scene.particle_spacing);
         if (!obstacle.empty())
             prepared.notes.push_back(body.name + " stays as given in a scene that starts at rest: " + obstacle);

@@ -67,6 +67,13 @@ HydrostaticsReport report_hydrostatics(const HydrostaticsRequest& request)
     body.center_of_mass = request.center_of_mass.value_or(solid.center_of_mass);
     body.water_density = request.water_density;
 
+    constexpr double kLightest = 1e-9; // of the water's density; its poses are lost in rounding below
+    if (!(body.mass >= kLightest * body.water_density * solid.volume)) {
+        std::ostringstream sentence;
+        sentence << request.mesh.string() << ": its mass of " << body.mass << " kg must be at least " << kLightest
+                 << " of the " << body.water_density * solid.volume << " kg of water that it has room for";
+        throw InputError(sentence.str());
+    }
     const auto as_modelled = flotation(body, Quatd::Identity());
     if (!as_modelled) refuse_as_sinking(request, body, solid.volume);
     HydrostaticsReport report;

@@ -1,3 +1,4 @@
+#include "scene/inner_points.hpp"
 #include "scene/mesh_loader.hpp"
 #include "scene/refuse.hpp"
 
@@ -36,7 +37,11 @@ void refuse_overlapping_parts(const SceneFile& scene, const std::vector<Triangle
         const Aabb reach = query.bounds();
         for (std::size_t b = 0; b < parts.size(); ++b) {
             if (a == b) continue;
-            for (const Vec3d& point : refined(parts[b], 4.0 * tolerance).vertices)
+            const Aabb box = bounds(parts[b]);
+            std::vector<Vec3d> points =
+                refined(parts[b], std::max(4.0 * tolerance, box.size().maxCoeff() / 64.0)).vertices;
+            for (const Vec3d& point : inner_points(SurfaceQuery(parts[b]), tolerance)) points.push_back(point);
+            for (const Vec3d& point : points)
                 if (reach.contains(point) && query.signed_distance(point) < -tolerance)
                     refuse(scene, body, ": parts ", a, " and ", b, " of its compound overlap; they may only touch");
         }

@@ -24,30 +24,31 @@ Vec3d read_rotation(const JsonNode& node, const ReadContext& context, Allowed al
     return {v[0], v[1], v[2]};
 }
 
+/// Of shapes: what is shorter has no area in double precision.
+constexpr Allowed kLength{Allowed::Range::positive, "m", 1e-9};
+
 Vec3d read_sizes(const JsonNode& node, const ReadContext& context)
 {
-    const Allowed positive{Allowed::Range::positive, "m"};
     if (context.dimensions == 2) {
-        const std::vector<double> xz = node.numbers({2}, "the 2 edge lengths [x, z]", positive);
+        const std::vector<double> xz = node.numbers({2}, "the 2 edge lengths [x, z]", kLength);
         return {xz[0], 1.0, xz[1]};
     }
-    const std::vector<double> v = node.numbers({3}, "the 3 edge lengths [x, y, z]", positive);
+    const std::vector<double> v = node.numbers({3}, "the 3 edge lengths [x, y, z]", kLength);
     return {v[0], v[1], v[2]};
 }
 
 SceneShapePart read_simple_shape(const JsonObject& object, const std::string& kind, const ReadContext& context)
 {
-    const Allowed positive{Allowed::Range::positive, "m"};
     const JsonNode node = object.required(kind.c_str());
     const bool plane = kind == "disc";
     if (kind != "box" && plane != (context.dimensions == 2))
         node.refuse(plane ? "is a shape for two dimensions; in three there are box, sphere, cylinder, mesh and compound"
                           : "is a shape for three dimensions; in two there are box, disc and compound");
     if (kind == "box") return {BoxShape{read_sizes(node, context)}, {}};
-    if (kind == "sphere") return {SphereShape{node.number(positive)}, {}};
-    if (kind == "disc") return {DiscShape{node.number(positive)}, {}};
+    if (kind == "sphere") return {SphereShape{node.number(kLength)}, {}};
+    if (kind == "disc") return {DiscShape{node.number(kLength)}, {}};
     if (kind == "cylinder") {
-        const std::vector<double> sizes = node.numbers({2}, "the 2 lengths [radius, height]", positive);
+        const std::vector<double> sizes = node.numbers({2}, "the 2 lengths [radius, height]", kLength);
         return {CylinderShape{sizes[0], sizes[1]}, {}};
     }
     return {read_mesh(JsonObject(node, {"file", "scale", "up"}), context), {}};

@@ -132,8 +132,9 @@ void read_time(const JsonObject& root, SceneFile& scene)
         const JsonObject time_step(*node, {"max", "cfl"});
         time_step.read("max", scene.max_time_step, {Allowed::Range::positive, "s"});
         time_step.read("cfl", scene.cfl);
-        if (!(scene.cfl > 0.0 && scene.cfl <= 1.0))
-            time_step.required("cfl").refuse_value("must be a number > 0 and <= 1");
+        constexpr double kLeastCfl = 1e-3; // a run of a second would take months
+        if (!(scene.cfl >= kLeastCfl && scene.cfl <= 1.0))
+            time_step.required("cfl").refuse_value("must be a number from 0.001 to 1");
         max = time_step.find("max");
     }
     if (scene.max_time_step * kMostSteps >= scene.duration) return;

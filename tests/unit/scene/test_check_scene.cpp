@@ -76,6 +76,15 @@ TEST_CASE("bodies outside the tank or in each other are refused", "[scene]")
     check_refused(kCrate, {at("0.45")}, {"bodies[0] (\"a\") overlaps bodies[1] (\"b\")"});
     check_refused(kCrate, {at("0.3")}, {"bodies[0] (\"a\") overlaps bodies[1] (\"b\")"}); // one inside the other
     CHECK(refusal([&] { (void)checked(kCrate, {at("0.5")}); }).empty());
+
+    // Face on face no point of a surface is in the other body.
+    const std::string same =
+        "bodies=[{\"name\":\"a\",\"shape\":{\"box\":[0.2,0.2,0.2]},\"mass\":1,\"position\":[0.5,0.5,0.5]},"
+        "{\"name\":\"b\",\"shape\":{\"box\":[0.2,0.2,0.2]},\"mass\":1,\"position\":[X,0.5,0.5]}]";
+    for (const char* x : {"0.5", "0.505"})
+        check_refused(kCrate, {std::string(same).replace(same.find('X'), 1, x)},
+                      {"bodies[0] (\"a\") overlaps bodies[1] (\"b\")"});
+    CHECK(refusal([&] { (void)checked(kCrate, {std::string(same).replace(same.find('X'), 1, "0.7")}); }).empty());
 }
 
 TEST_CASE("2-D bodies are checked in their plane", "[scene]")
@@ -229,6 +238,8 @@ TEST_CASE("compounds add up, and their parts may only touch", "[scene]")
     const SceneCheck check = checked(kCrate, {compound("0.2"), "bodies.0.position=[0.5,0.5,0.6]"});
     CHECK(check.bodies.at(0).volume == Approx(0.01));
     check_refused(kCrate, {compound("0.1"), "bodies.0.position=[0.5,0.5,0.6]"}, {"\"crate\"", "compound overlap"});
+    check_refused(kCrate, {"bodies.0.shape={\"compound\":[{\"box\":[0.2,0.2,0.2]},{\"box\":[0.2,0.2,0.2]}]}"},
+                  {"\"crate\"", "parts 0 and 1", "compound overlap"});
 }
 
 TEST_CASE("the scenes of the repository pass", "[scene]")

@@ -175,6 +175,8 @@ TEST_CASE("settings out of their range are refused", "[scene]")
     CHECK_FALSE(refusal_of(kCrate, {"time_step.cfl=1.5"}).empty());
     CHECK_FALSE(refusal_of(kCrate, {"time_step.cfl=0"}).empty());
     CHECK(refusal_of(kCrate, {"time_step.cfl=1"}).empty());
+    check_contains(refusal_of(kCrate, {"time_step.cfl=1e-300"}), {"time_step.cfl must be", "from 0.001 to 1"});
+    check_contains(refusal_of(kCrate, {"bodies.0.shape={\"sphere\":1e-300}"}), {"sphere must be", "from 1e-09"});
     CHECK_FALSE(refusal_of(kCrate, {"pressure.tolerance=0"}).empty());
     CHECK_FALSE(refusal_of(kCrate, {"pressure.max_iterations=0"}).empty());
     CHECK_FALSE(refusal_of(kCrate, {"pressure.solver=jacobi"}).empty());
