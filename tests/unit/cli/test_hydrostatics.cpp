@@ -133,6 +133,7 @@ TEST_CASE("bad input of hydrostatics is one sentence that names option and limit
         {"none.obj --mass 1", "none.obj\": there is no such file"},
         {"open.obj --mass 1", "open.obj has 4 edges with a triangle on one side only"},
         {"log.obj --density 7850", "log.obj: it sinks"},
+        {"log.obj --mass 1e-300", "log.obj: its mass of 1e-300 kg must be at least 1e-09 of the 8000 kg"},
         {"log.obj --mass 8001", "it sinks: its 8001 kg in 8 m^3 are 1000.12 kg/m^3, and the water has 1000 kg/m^3"},
     };
     for (const auto& [arguments, words] : cases) {
