@@ -215,6 +215,7 @@ struct FluidWorld::Impl {
     void predict_twists(Bodies& port);
     void build_mobility(Bodies& port);
     void find_mobility(Bodies& port);
+    void free_pinched(std::span<Scalar> of_system) const;
     void solve_velocities(const PressureSystem& system, double dt, bool split, Bodies& port, StepReport& report);
     [[nodiscard]] bool revise(Bodies& port);
     [[nodiscard]] bool is_strong() const
