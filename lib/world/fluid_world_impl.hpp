@@ -168,6 +168,7 @@ struct FluidWorld::Impl {
     void cut_and_place_fluid();
     void relax(int max_rounds);
     void guard_relaxation();
+    [[nodiscard]] double enclosed_room() const;
     [[nodiscard]] bool is_overfull();
     void loosen_enclosed_water();
     [[nodiscard]] bool in_solid(const Vec3d& point) const;

@@ -1,10 +1,11 @@
 #include "world/fluid_world_impl.hpp"
 
 #include "flotsam/core/contracts.hpp"
+#include "flotsam/geometry/mass_properties.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <sstream>
 
 namespace flotsam {
@@ -184,6 +185,30 @@ void FluidWorld::Impl::relax(int max_rounds)
     }
 }
 
+/// Room for water in the one wall that is closed on all sides, less the bodies [m^3; in 2-D m^2]; infinite without one.
+double FluidWorld::Impl::enclosed_room() const
+{
+    const bool is_plane = settings.dimensions == 2;
+    double room = std::numeric_limits<double>::infinity();
+    int containers = 0;
+    for (const Wall& wall : walls) {
+        const bool is_open = wall.open[0] || wall.open[1] || wall.open[4] || wall.open[5] ||
+                             (!is_plane && (wall.open[2] || wall.open[3])); // the plane has no sides along y
+        const bool is_shut = wall.box ? !is_open : wall.side == WallSide::inside && is_closed(wall.mesh);
+        if (!is_shut || (is_plane && !wall.box)) continue;
+        ++containers;
+        const Vec3d size = wall.box ? wall.box->size() : Vec3d::Zero();
+        room = !wall.box ? mass_properties(wall.mesh).volume : is_plane ? size.x() * size.z() : size.prod();
+    }
+    if (containers != 1) return std::numeric_limits<double>::infinity();
+    for (const BodySurface& body : bodies) {
+        if (!body.query) continue;
+        const double volume = mass_properties(body.mesh).volume;
+        room -= is_plane ? volume / bounds(body.mesh).size().y() : volume;
+    }
+    return room;
+}
+
 /// Whether solids enclose more water than has room: the density stays too high, or so even that nothing gives way, and
 /// there is no free surface, where some particles would have less than the rest density.
 bool FluidWorld::Impl::is_overfull()
@@ -210,11 +235,15 @@ void FluidWorld::Impl::loosen_enclosed_water()
     const std::size_t all = fluid.size();
     const Vec3d up = settings.gravity.norm() > 0.0 ? Vec3d(-settings.gravity.normalized()) : Vec3d::UnitZ();
     std::vector<std::uint32_t> highest;
+    constexpr double kFull = 0.97; // part of the room
+    if (static_cast<double>(all) * std::pow(spacing(), settings.dimensions) < kFull * enclosed_room()) return;
     while (20 * (all - fluid.size()) < all && is_overfull()) {
-        highest.resize(fluid.size());
-        std::iota(highest.begin(), highest.end(), std::uint32_t(0));
+        highest.clear();
+        for (std::uint32_t i = 0; i < fluid.size(); ++i)
+            if (placed[fluid.id[i]] == 0) highest.push_back(i);
         const auto height = [&](std::uint32_t i) { return up.dot(fluid.position[i].head<3>().cast<double>()); };
-        const std::size_t count = 1 + fluid.size() / kParts;
+        const std::size_t count = std::min(highest.size(), 1 + fluid.size() / kParts);
+        if (count == 0) return; // the caller wants all where they are
         std::partial_sort(highest.begin(), highest.begin() + static_cast<std::ptrdiff_t>(count), highest.end(),
                           [&](std::uint32_t a, std::uint32_t b) { return height(a) > height(b); });
         highest.resize(count);

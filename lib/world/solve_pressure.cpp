@@ -175,16 +175,15 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
         n, [&](std::size_t i) { fluid.pressure[i] = multiplier[i] * fluid.density[i] * fluid.density[i] * inv_dt; });
 }
 
-/// Between solids that all but touch, a particle is denser than water even without neighbours, and no pressure takes it
-/// out of there: some such particles under a heavy raft on the floor would carry all of it, like grains of sand, at
-/// sixty times its mean pressure, and the step would shrink to an eighth. A diagonal of 0 leaves them without pressure
-/// and shift, and the solids meet.
+/// Solids that all but touch fill nearly all that a particle between them sees, and no pressure takes it out of there:
+/// some such particles under a heavy raft on the floor would carry all of it, like grains of sand, at sixty times its
+/// mean pressure, and the step would shrink to an eighth. A diagonal of 0 leaves them without pressure and shift, and
+/// the solids meet. The shares are those between two planes a quarter of a spacing apart; corners do not reach them.
 void FluidWorld::Impl::free_pinched(std::span<Scalar> of_system) const
 {
-    const Scalar own = static_cast<Scalar>(fluid.particle_mass) * kernel.value(0);
-    const Scalar rho0 = static_cast<Scalar>(settings.rest_density);
+    const Scalar most = settings.dimensions == 2 ? Scalar(0.9) : Scalar(0.75); // of the rest density, from solids
     workers.for_each(fluid.size(), [&](std::size_t i) {
-        if (own + rho0 * boundary_pairs.kernel_sum[i] > rho0) of_system[i] = 0;
+        if (boundary_pairs.kernel_sum[i] > most) of_system[i] = 0;
     });
 }
 
