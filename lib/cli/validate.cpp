@@ -76,9 +76,6 @@ int validate(std::ostream& stream, const Arguments& arguments)
     std::error_code ignored;
     if (std::filesystem::exists(arguments.out, ignored) && !std::filesystem::is_directory(arguments.out, ignored))
         throw InputError("--out: " + arguments.out.string() + " is a file, and must be a directory or a new name");
-    std::error_code failed; // now, and not when the first case is done
-    std::filesystem::create_directories(arguments.out, failed);
-    if (failed) throw InputError("--out: " + arguments.out.string() + " cannot be made: " + failed.message());
     const ValidationOptions options{arguments.quick, arguments.threads};
     ValidationReport report(arguments.out, options);
     int outside = 0, made = 0;

@@ -1,5 +1,5 @@
-#include "scene/inner_points.hpp"
 #include "scene/prepared_scene.hpp"
+#include "scene/probe_points.hpp"
 #include "scene/refuse.hpp"
 
 #include <algorithm>
@@ -18,22 +18,31 @@ struct PlacedBody {
     Pose pose;
     SurfaceQuery query;         ///< in the body's frame
     std::vector<Vec3d> surface; ///< world points about a spacing apart
-    std::vector<Vec3d> inside;  ///< world points well below it
+    std::vector<Vec3d> points;  ///< these, and world points well below the surface
     Aabb reach;                 ///< of the surface, in the world
 
     /// In 2-D, where bodies are a metre long in y, all points are moved into the plane, far from the ends.
     PlacedBody(const PreparedBody& body, const SceneFile& scene) : name(body.name), pose(body.start), query(body.mesh)
     {
-        const double edge = std::max(scene.particle_spacing, bounds(body.mesh).size().maxCoeff() / 64.0);
-        for (const Vec3d& vertex : refined(body.mesh, edge).vertices) {
-            surface.push_back(pose.to_world(vertex));
-            reach.extend(surface.back());
-            if (scene.dimensions == 2) surface.back().y() = 0.0;
+        for (const Vec3d& point : surface_points(body.mesh, scene.particle_spacing)) {
+            reach.extend(pose.to_world(point));
+            surface.push_back(placed(point, scene));
         }
-        for (const Vec3d& point : inner_points(query, kTouching * scene.particle_spacing)) {
-            inside.push_back(pose.to_world(point));
-            if (scene.dimensions == 2) inside.back().y() = 0.0;
-        }
+        points = surface;
+        for (const Vec3d& point : inner_points(query, kTouching * scene.particle_spacing))
+            points.push_back(placed(point, scene));
+    }
+    [[nodiscard]] Vec3d placed(const Vec3d& point_body, const SceneFile& scene) const
+    {
+        Vec3d point = pose.to_world(point_body);
+        if (scene.dimensions == 2) point.y() = 0.0;
+        return point;
+    }
+    [[nodiscard]] double deepest_of(const PlacedBody& other) const
+    {
+        double deepest = -1.0;
+        for (const Vec3d& point : other.points) deepest = std::max(deepest, depth(point));
+        return deepest;
     }
     [[nodiscard]] double depth(const Vec3d& point) const // inside the body, else negative
     {
@@ -171,10 +180,8 @@ void check_obstacle(const SceneFile& scene, const Tank& tank, const PlacedBody& 
 {
     double depth = tank.settings->mesh ? wall_in_body(tank.wall->mesh, body, scene.particle_spacing) : -1.0;
     if (tank.closed && !tank.holds_water && tank.settings->side != WallSide::both)
-        for (const std::vector<Vec3d>* points : {&body.surface, &body.inside})
-            for (const Vec3d& point : *points)
-                if (tank.closed->bounds().contains(point))
-                    depth = std::max(depth, -tank.closed->signed_distance(point));
+        for (const Vec3d& point : body.points)
+            if (tank.closed->bounds().contains(point)) depth = std::max(depth, -tank.closed->signed_distance(point));
     if (depth > tolerance) refuse(scene, body.name, " overlaps " + tank.wall->name + " by " + millimetres(depth));
 }
 
@@ -206,11 +213,7 @@ void check_walls(const SceneFile& scene, const PreparedScene& prepared, const st
 
 void check_pair(const SceneFile& scene, const PlacedBody& a, const PlacedBody& b, double tolerance)
 {
-    double depth = -1.0;
-    for (const std::vector<Vec3d>* points : {&a.surface, &a.inside})
-        for (const Vec3d& point : *points) depth = std::max(depth, b.depth(point));
-    for (const std::vector<Vec3d>* points : {&b.surface, &b.inside})
-        for (const Vec3d& point : *points) depth = std::max(depth, a.depth(point));
+    const double depth = std::max(a.deepest_of(b), b.deepest_of(a));
     if (depth > tolerance) refuse(scene, a.name, " overlaps " + b.name + " by " + millimetres(depth));
 }
 

@@ -1,6 +1,7 @@
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/geometry/equilibrium_poses.hpp"
 #include "scene/prepared_scene.hpp"
+#include "scene/probe_points.hpp"
 
 #include <algorithm>
 #include <array>
@@ -108,9 +109,7 @@ class Touching {
     }
     const std::vector<Vec3d>& points(std::size_t k)
     {
-        const TriangleMesh& mesh = bodies_[k].mesh;
-        const double edge = std::max(scene_.particle_spacing, bounds(mesh).size().maxCoeff() / 64.0);
-        if (points_[k].empty()) points_[k] = refined(mesh, edge).vertices;
+        if (points_[k].empty()) points_[k] = surface_points(bodies_[k].mesh, scene_.particle_spacing);
         return points_[k];
     }
 

@@ -47,6 +47,18 @@ std::vector<double> radians(const HeelRange& range)
     throw InputError(sentence.str());
 }
 
+/// Poses of what has next to no mass are lost in rounding.
+void refuse_if_massless(const HydrostaticsRequest& request, const FloatingBody& body, double volume)
+{
+    constexpr double kLightest = 1e-9; // of the water's density
+    const double displaced = body.water_density * volume;
+    if (body.mass >= kLightest * displaced) return;
+    std::ostringstream sentence;
+    sentence << request.mesh.string() << ": its mass of " << body.mass << " kg must be at least " << kLightest
+             << " of the " << displaced << " kg of water that it has room for";
+    throw InputError(sentence.str());
+}
+
 } // namespace
 
 int HeelRange::rows() const
@@ -67,13 +79,7 @@ HydrostaticsReport report_hydrostatics(const HydrostaticsRequest& request)
     body.center_of_mass = request.center_of_mass.value_or(solid.center_of_mass);
     body.water_density = request.water_density;
 
-    constexpr double kLightest = 1e-9; // of the water's density; its poses are lost in rounding below
-    if (!(body.mass >= kLightest * body.water_density * solid.volume)) {
-        std::ostringstream sentence;
-        sentence << request.mesh.string() << ": its mass of " << body.mass << " kg must be at least " << kLightest
-                 << " of the " << body.water_density * solid.volume << " kg of water that it has room for";
-        throw InputError(sentence.str());
-    }
+    refuse_if_massless(request, body, solid.volume);
     const auto as_modelled = flotation(body, Quatd::Identity());
     if (!as_modelled) refuse_as_sinking(request, body, solid.volume);
     HydrostaticsReport report;

@@ -1,5 +1,5 @@
-#include "scene/inner_points.hpp"
 #include "scene/mesh_loader.hpp"
+#include "scene/probe_points.hpp"
 #include "scene/refuse.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -31,21 +31,23 @@ TriangleMesh mesh_of_part(const Shape& shape, double spacing)
 /// Parts that cut each other would count twice in volume and buoyancy.
 void refuse_overlapping_parts(const SceneFile& scene, const std::vector<TriangleMesh>& parts, const std::string& body)
 {
+    if (parts.size() < 2) return;
     const double tolerance = 0.25 * scene.particle_spacing;
-    for (std::size_t a = 0; a < parts.size() && parts.size() > 1; ++a) {
-        const SurfaceQuery query(parts[a]);
-        const Aabb reach = query.bounds();
+    std::vector<SurfaceQuery> solids;
+    std::vector<std::vector<Vec3d>> points;
+    for (const TriangleMesh& part : parts) {
+        solids.emplace_back(part);
+        points.push_back(surface_points(part, scene.particle_spacing));
+        const std::vector<Vec3d> inner = inner_points(solids.back(), tolerance);
+        points.back().insert(points.back().end(), inner.begin(), inner.end());
+    }
+    for (std::size_t a = 0; a < parts.size(); ++a)
         for (std::size_t b = 0; b < parts.size(); ++b) {
             if (a == b) continue;
-            const Aabb box = bounds(parts[b]);
-            std::vector<Vec3d> points =
-                refined(parts[b], std::max(4.0 * tolerance, box.size().maxCoeff() / 64.0)).vertices;
-            for (const Vec3d& point : inner_points(SurfaceQuery(parts[b]), tolerance)) points.push_back(point);
-            for (const Vec3d& point : points)
-                if (reach.contains(point) && query.signed_distance(point) < -tolerance)
+            for (const Vec3d& point : points[b])
+                if (solids[a].bounds().contains(point) && solids[a].signed_distance(point) < -tolerance)
                     refuse(scene, body, ": parts ", a, " and ", b, " of its compound overlap; they may only touch");
         }
-    }
 }
 
 /// Moments about the axes of the body's frame, which is turned to the principal ones where it has to be. In 2-D only

@@ -1,3 +1,4 @@
+#include "flotsam/core/contracts.hpp"
 #include "flotsam/core/parallel.hpp"
 #include "flotsam/io/csv.hpp"
 #include "flotsam/io/output_directory.hpp"
@@ -181,13 +182,18 @@ std::string html_of(const std::vector<ValidationResult>& results, const std::vec
 
 } // namespace
 
+ValidationReport::ValidationReport(std::filesystem::path directory, const ValidationOptions& options)
+    : directory_(std::move(directory)), options_(options)
+{
+    std::error_code failed;
+    std::filesystem::create_directories(directory_, failed);
+    if (failed) throw InputError("the directory " + directory_.string() + " cannot be made: " + failed.message());
+}
+
 void ValidationReport::add(const ValidationResult& result)
 {
     results_.push_back(result);
     sections_.push_back(section_of(result));
-    std::error_code failed;
-    std::filesystem::create_directories(directory_, failed);
-    if (failed) throw OutputError(directory_.string() + " cannot be made: " + failed.message());
     write_text_atomically(directory_ / "validation.csv", csv_of(results_));
     write_text_atomically(directory_ / "report.html", html_of(results_, sections_, options_));
 }

@@ -166,6 +166,7 @@ struct FluidWorld::Impl {
     void choose_wall_sides();
     void seed_where_dry(FluidSeed seed);
     void cut_and_place_fluid();
+    void look_around(StepReport& report);
     void relax(int max_rounds);
     void guard_relaxation();
     [[nodiscard]] double enclosed_room() const;
@@ -216,7 +217,7 @@ struct FluidWorld::Impl {
     void predict_twists(Bodies& port);
     void build_mobility(Bodies& port);
     void find_mobility(Bodies& port);
-    void free_pinched(std::span<Scalar> of_system) const;
+    void free_pinched();
     void solve_velocities(const PressureSystem& system, double dt, bool split, Bodies& port, StepReport& report);
     [[nodiscard]] bool revise(Bodies& port);
     [[nodiscard]] bool is_strong() const

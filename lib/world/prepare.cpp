@@ -11,7 +11,7 @@
 namespace flotsam {
 namespace {
 
-constexpr int kRelaxingRounds = 60; ///< at most, at the start
+constexpr int kRoundsAtStart = 60; ///< at most, at the start
 
 /// Inside the closed sides of a box wall: open ones do not bound.
 bool inside_box_wall(const Wall& wall, const Vec3d& p, int dimensions)
@@ -38,6 +38,23 @@ bool is_closed(const TriangleMesh& mesh)
     return sum.norm() < 1e-6 * area;
 }
 
+/// What a wall holds that is closed on all sides [m^3; in 2-D m^2]; nothing for others, and for meshes in 2-D.
+std::optional<double> volume_within(const Wall& wall, int dimensions)
+{
+    if (!wall.box) {
+        if (dimensions == 2 || wall.side != WallSide::inside || !is_closed(wall.mesh)) return std::nullopt;
+        return mass_properties(wall.mesh).volume;
+    }
+    double volume = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (dimensions == 2 && axis == 1) continue;
+        const std::size_t low = 2 * static_cast<std::size_t>(axis);
+        if (wall.open[low] || wall.open[low + 1]) return std::nullopt;
+        volume *= wall.box->size()[axis];
+    }
+    return volume;
+}
+
 } // namespace
 
 void FluidWorld::Impl::prepare(Bodies& port, const std::function<void(const SettleProgress&)>& on_round)
@@ -58,7 +75,7 @@ void FluidWorld::Impl::prepare(Bodies& port, const std::function<void(const Sett
     for (const BodySurface& body : bodies) surfaces.push_back({body.query.get(), false, true});
     guard.build(surfaces, spacing(), workers);
     place_body_samples();
-    relax(kRelaxingRounds);
+    relax(kRoundsAtStart);
     loosen_enclosed_water();
     if (settings.start == FluidWorldSettings::Start::at_rest) settle(on_round);
 }
@@ -164,15 +181,21 @@ void FluidWorld::Impl::cut_and_place_fluid()
     seeds.shrink_to_fit();
 }
 
+/// Neighbours and densities of the particles as they lie. (A step does the same under its stages' clocks.)
+void FluidWorld::Impl::look_around(StepReport& report)
+{
+    sample_walls_in_reach();
+    find_neighbours();
+    measure_density(report);
+}
+
 /// The lattice of the start is a little too dense where it was cut or stretched: shift it to rest density before any
 /// velocity can come of it.
 void FluidWorld::Impl::relax(int max_rounds)
 {
     StepReport ignored;
     for (int round = 0; round < max_rounds && fluid.size() > 0; ++round) {
-        sample_walls_in_reach();
-        find_neighbours();
-        measure_density(ignored);
+        look_around(ignored);
         if (ignored.compression_mean <= 0.5 * settings.pressure.tolerance && ignored.compression_max < 0.01) break;
         if (solve_shift(pressure_system()).iterations == 0) break;
         new_position.resize(fluid.size());
@@ -189,22 +212,19 @@ void FluidWorld::Impl::relax(int max_rounds)
 double FluidWorld::Impl::enclosed_room() const
 {
     const bool is_plane = settings.dimensions == 2;
-    double room = std::numeric_limits<double>::infinity();
-    int containers = 0;
+    constexpr double kOpen = std::numeric_limits<double>::infinity();
+    double room = kOpen;
     for (const Wall& wall : walls) {
-        const bool is_open = wall.open[0] || wall.open[1] || wall.open[4] || wall.open[5] ||
-                             (!is_plane && (wall.open[2] || wall.open[3])); // the plane has no sides along y
-        const bool is_shut = wall.box ? !is_open : wall.side == WallSide::inside && is_closed(wall.mesh);
-        if (!is_shut || (is_plane && !wall.box)) continue;
-        ++containers;
-        const Vec3d size = wall.box ? wall.box->size() : Vec3d::Zero();
-        room = !wall.box ? mass_properties(wall.mesh).volume : is_plane ? size.x() * size.z() : size.prod();
+        const std::optional<double> volume = volume_within(wall, settings.dimensions);
+        if (!volume) continue;
+        if (room < kOpen) return kOpen; // which of two holds the water is not known
+        room = *volume;
     }
-    if (containers != 1) return std::numeric_limits<double>::infinity();
+    if (!(room < kOpen)) return kOpen;
     for (const BodySurface& body : bodies) {
         if (!body.query) continue;
         const double volume = mass_properties(body.mesh).volume;
-        room -= is_plane ? volume / bounds(body.mesh).size().y() : volume;
+        room -= is_plane ? volume / body.query->bounds().size().y() : volume;
     }
     return room;
 }
@@ -215,8 +235,7 @@ bool FluidWorld::Impl::is_overfull()
 {
     if (fluid.size() == 0) return false;
     StepReport measured;
-    find_neighbours();
-    measure_density(measured);
+    look_around(measured);
     const auto part_below = [&](double share) {
         const Scalar limit = static_cast<Scalar>(share * settings.rest_density);
         const auto count =
@@ -231,26 +250,27 @@ bool FluidWorld::Impl::is_overfull()
 /// out of it: pressure would grow without bound. Particles are taken away at the top until the rest has room.
 void FluidWorld::Impl::loosen_enclosed_water()
 {
-    constexpr std::size_t kParts = 400; // one of so many at a time
+    constexpr double kFull = 0.97, kMost = 0.05; // parts of the room, and of the particles that may be taken away
+    constexpr std::size_t kParts = 400;          // one of so many at a time
     const std::size_t all = fluid.size();
-    const Vec3d up = settings.gravity.norm() > 0.0 ? Vec3d(-settings.gravity.normalized()) : Vec3d::UnitZ();
-    std::vector<std::uint32_t> highest;
-    constexpr double kFull = 0.97; // part of the room
+    const double least = (1.0 - kMost) * static_cast<double>(all);
     if (static_cast<double>(all) * std::pow(spacing(), settings.dimensions) < kFull * enclosed_room()) return;
-    while (20 * (all - fluid.size()) < all && is_overfull()) {
+    const Vec3d up = settings.gravity.norm() > 0.0 ? Vec3d(-settings.gravity.normalized()) : Vec3d::UnitZ();
+    const auto height = [&](std::uint32_t i) { return up.dot(fluid.position[i].head<3>().cast<double>()); };
+    std::vector<std::uint32_t> highest;
+    while (static_cast<double>(fluid.size()) > least && is_overfull()) {
         highest.clear();
         for (std::uint32_t i = 0; i < fluid.size(); ++i)
             if (placed[fluid.id[i]] == 0) highest.push_back(i);
-        const auto height = [&](std::uint32_t i) { return up.dot(fluid.position[i].head<3>().cast<double>()); };
         const std::size_t count = std::min(highest.size(), 1 + fluid.size() / kParts);
-        if (count == 0) return; // the caller wants all where they are
+        if (count == 0) break; // the caller wants all where they are
         std::partial_sort(highest.begin(), highest.begin() + static_cast<std::ptrdiff_t>(count), highest.end(),
                           [&](std::uint32_t a, std::uint32_t b) { return height(a) > height(b); });
         highest.resize(count);
         std::sort(highest.begin(), highest.end());
         StepReport ignored;
         remove_particles(highest, ignored);
-        relax(kRelaxingRounds);
+        relax(kRoundsAtStart);
     }
     if (fluid.size() == all) return;
     std::ostringstream note;

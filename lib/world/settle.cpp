@@ -58,9 +58,7 @@ void FluidWorld::Impl::settle(const std::function<void(const SettleProgress&)>& 
 double FluidWorld::Impl::settle_round(double dt, Bodies& held)
 {
     StepReport ignored;
-    sample_walls_in_reach();
-    find_neighbours();
-    measure_density(ignored);
+    look_around(ignored);
     const std::size_t n = fluid.size();
     Vec4 gravity_step = Vec4::Zero();
     gravity_step.head<3>() = (dt * settings.gravity).cast<Scalar>();

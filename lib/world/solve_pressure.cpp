@@ -103,7 +103,6 @@ bool FluidWorld::Impl::shift_if_possible(const PressureSystem& system, StepRepor
     constexpr int kFailures = 3, kStepsWithout = 50, kStepsEnclosed = 1000;
     steps_enclosed = std::max(0, steps_enclosed - 1);
     if (settings.pressure.source == PressureSettings::Source::split && steps_without_shift == 0) {
-        free_pinched(fluid_diagonal);
         const SolveResult result = solve_shift(system);
         report.shift_iterations = result.iterations;
         report.products += result.products;
@@ -150,6 +149,7 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
     constexpr int kMostRounds = 6; // of the solve, until joints and contacts hold and yield as it has them
     const std::size_t n = fluid.size();
     const PressureSystem system = pressure_system();
+    free_pinched();
     const bool split = shift_if_possible(system, report);
     // The split leaves no density error in the pressure, so all of the last one is a good start; with the published
     // source a full start integrates the error and rings.
@@ -179,11 +179,11 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
 /// some such particles under a heavy raft on the floor would carry all of it, like grains of sand, at sixty times its
 /// mean pressure, and the step would shrink to an eighth. A diagonal of 0 leaves them without pressure and shift, and
 /// the solids meet. The shares are those between two planes a quarter of a spacing apart; corners do not reach them.
-void FluidWorld::Impl::free_pinched(std::span<Scalar> of_system) const
+void FluidWorld::Impl::free_pinched()
 {
     const Scalar most = settings.dimensions == 2 ? Scalar(0.9) : Scalar(0.75); // of the rest density, from solids
     workers.for_each(fluid.size(), [&](std::size_t i) {
-        if (boundary_pairs.kernel_sum[i] > most) of_system[i] = 0;
+        if (boundary_pairs.kernel_sum[i] > most) fluid_diagonal[i] = 0;
     });
 }
 
@@ -213,7 +213,6 @@ void FluidWorld::Impl::solve_velocities(const PressureSystem& system, double dt,
         if (preconditions) preconditioner.build(system, mobility, fluid_diagonal);
         system.add_response_diagonal(mobility, diagonal);
     }
-    free_pinched(diagonal);
     const auto answer_impulses = [&](std::span<const Wrench> impulses, std::span<Twist> answers) {
         respond(port, impulses, answers);
     };

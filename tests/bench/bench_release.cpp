@@ -31,12 +31,11 @@
 // - Shifting particles to be evenly spaced for a narrower kernel (cubic of 2 d and of 1.5 d, 20 to 50 of its unit a
 //   second) takes a quarter of the drag at most, and ten times the iterations.
 // - Driven at a given acceleration instead (2-D, disc of 6 spacings in radius, settled water, tolerance 1e-5; force
-// less
-//   that on the same disc held still, which leaves a noise of 0.003): the added mass starts at 1.08 of the displaced
-//   mass (1.03 between these walls), and its mean until 60 ms is 1.16. What grows does so with the square of time,
-//   alike at 0.3 and 3 m/s^2 and with gravity (none at 1 m/s^2; 1.37 at 40): a spring, not friction, of 0.1 rho g V for
-//   a way of a spacing, that yields after a tenth of one. It is the same with and without packing_relief, so it sits in
-//   the layers that touch.
+//   less that on the same disc held still, which leaves a noise of 0.003): the added mass starts at 1.08 of the
+//   displaced mass (1.03 between these walls), and its mean until 60 ms is 1.16. What grows does so with the square of
+//   time, alike at 0.3 and 3 m/s^2 and with gravity (none at 1 m/s^2; 1.37 at 40): a spring, not friction, of
+//   0.1 rho g V for a way of a spacing, that yields after a tenth of one. It is the same with and without
+//   packing_relief, so it sits in the layers that touch.
 // - Their stress over p, less its mean over the last second, taken away like that of the others and from the samples,
 //   too: a ball of 10 spacings (0.5) falls short by 4 % instead of 12, but a still tank of 15 layers moves at 2 % of
 //   sqrt(g depth) after 8 s instead of 0.15. Of it the part along the strain rate alone: 0.38 %, and half of the gain.

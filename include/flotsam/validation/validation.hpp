@@ -88,10 +88,8 @@ struct ValidationCaseInfo {
 /// report.html, one page with tables, pictures and charts that needs no other file. Each chart is drawn once.
 class ValidationReport {
   public:
-    ValidationReport(std::filesystem::path directory, const ValidationOptions& options)
-        : directory_(std::move(directory)), options_(options)
-    {
-    }
+    /// Makes the directory if it is not there; throws InputError where it cannot.
+    ValidationReport(std::filesystem::path directory, const ValidationOptions& options);
     /// Adds a case and writes both files anew. Throws OutputError.
     void add(const ValidationResult& result);
 

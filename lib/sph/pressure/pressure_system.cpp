@@ -140,7 +140,8 @@ void PressureSystem::add_response_diagonal(std::span<const Eigen::Matrix<double,
         }
         for (std::uint32_t k = contacts_->start[owner]; k < contacts_->start[owner + 1]; ++k) {
             const Vec6d u = root_t * contacts_->row[k].cast<double>();
-            diagonal[contacts_->particle[k]] += mass_ * static_cast<Scalar>(u.cwiseAbs().dot(sums));
+            Scalar& of_particle = diagonal[contacts_->particle[k]];
+            if (of_particle > Scalar(0)) of_particle += mass_ * static_cast<Scalar>(u.cwiseAbs().dot(sums));
         }
     }
 }

@@ -86,7 +86,7 @@ class PressureSystem {
     /// Adds to `diagonal`, for each particle at an owner that responds, a bound of the row sum of the owner's part of
     /// A: with u_i = L^T row_i, Y = L L^T: sum_j |u_i . u_j| <= sum_c |u_ic| sum_j |u_jc|. A relaxed Jacobi sweep with
     /// this diagonal converges however light the body is, and A scaled by it has no eigenvalue that grows with 1 /
-    /// mass.
+    /// mass. A particle whose diagonal is 0 carries no pressure, and keeps it.
     void add_response_diagonal(std::span<const Eigen::Matrix<double, 6, 6>> mobility, std::span<Scalar> diagonal) const;
 
   private:

@@ -1,6 +1,13 @@
-#include "scene/inner_points.hpp"
+#include "scene/probe_points.hpp"
+
+#include <algorithm>
 
 namespace flotsam::scene {
+
+std::vector<Vec3d> surface_points(const TriangleMesh& mesh, double spacing)
+{
+    return refined(mesh, std::max(spacing, bounds(mesh).size().maxCoeff() / 64.0)).vertices;
+}
 
 std::vector<Vec3d> grid_in(const Aabb& box)
 {

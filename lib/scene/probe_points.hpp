@@ -6,6 +6,11 @@
 
 namespace flotsam::scene {
 
+// Points of solids that are asked for where they lie in other solids.
+
+/// Points of a surface about `spacing` [m] apart; further apart where that would be more than 64 in its length.
+[[nodiscard]] std::vector<Vec3d> surface_points(const TriangleMesh& mesh, double spacing);
+
 /// Points spread evenly over a box, none on its sides.
 [[nodiscard]] std::vector<Vec3d> grid_in(const Aabb& box);
 
