@@ -4,37 +4,13 @@
 #include "geometry/plane_cut.hpp"
 #include "geometry/point_grid.hpp"
 #include "geometry/sample_rods.hpp"
+#include "geometry/sheet_sides.hpp"
 #include "geometry/station_runs.hpp"
 
 #include <algorithm>
 
 namespace flotsam {
 namespace {
-
-Vec3d in_space(const Vec2d& p)
-{
-    return {p.x(), 0.0, p.y()};
-}
-
-/// The outline pulled along y: its distances in the plane are those of the outline.
-TriangleMesh ribbon(const std::vector<CutLine>& lines, double half)
-{
-    TriangleMesh mesh;
-    const Vec3d across(0.0, half, 0.0);
-    for (const CutLine& line : lines) {
-        const int first = static_cast<int>(mesh.vertices.size()), count = static_cast<int>(line.points.size());
-        for (const Vec2d& p : line.points) {
-            mesh.vertices.emplace_back(in_space(p) - across);
-            mesh.vertices.emplace_back(in_space(p) + across);
-        }
-        for (int k = 0; k < count - (line.closed ? 0 : 1); ++k) {
-            const int p = first + 2 * k, q = first + 2 * ((k + 1) % count);
-            mesh.triangles.push_back({p, q + 1, q});
-            mesh.triangles.push_back({p, p + 1, q + 1});
-        }
-    }
-    return mesh;
-}
 
 /// Walks a line of the outline and collects the stations of its offset.
 class OutlineWalk {
@@ -130,13 +106,9 @@ void drop_second_layers(std::vector<OffsetPoint>& samples, double spacing)
     samples = std::move(kept);
 }
 
-} // namespace
-
-std::vector<OffsetPoint> sample_outline(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
+std::vector<OffsetPoint> sample_lines(const SurfaceQuery& outline, const std::vector<CutLine>& lines,
+                                      const SurfaceSampleSettings& settings)
 {
-    const std::vector<CutLine> lines = cut_at_y0(surface.mesh());
-    if (lines.empty()) throw InputError("a mesh of a two-dimensional world must cross the plane y = 0");
-    const SurfaceQuery outline(ribbon(lines, surface.bounds().size().maxCoeff()));
     const OffsetSurface offset(outline, settings);
     OutlineWalk walk(offset, settings.solid == SurfaceSampleSettings::Solid::inside ? -1.0 : 1.0, settings.spacing);
     for (const CutLine& line : lines) walk.along(line);
@@ -147,6 +119,25 @@ std::vector<OffsetPoint> sample_outline(const SurfaceQuery& surface, const Surfa
     if (offset.inset() > 0.0) sample_rods(samples, walk.bare(), offset, settings.spacing);
     for (OffsetPoint& sample : samples) sample.position.y() = 0.0;
     return samples;
+}
+
+} // namespace
+
+std::vector<std::vector<OffsetPoint>> sample_outline(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
+{
+    const std::vector<CutLine> lines = cut_at_y0(surface.mesh());
+    if (lines.empty()) throw InputError("a mesh of a two-dimensional world must cross the plane y = 0");
+    const SheetSides sheet = sheet_sides(surface, settings);
+    if (sheet.sides.empty()) {
+        const SurfaceQuery outline(ribbon(lines, surface.bounds().size().maxCoeff()));
+        return {sample_lines(outline, lines, settings)};
+    }
+    std::vector<std::vector<OffsetPoint>> result;
+    SurfaceSampleSettings of_side = settings;
+    of_side.solid = SurfaceSampleSettings::Solid::inside;
+    for (const TriangleMesh& side : sheet.sides)
+        result.push_back(sample_lines(SurfaceQuery(side), cut_at_y0(side), of_side));
+    return result;
 }
 
 } // namespace flotsam

@@ -100,6 +100,25 @@ std::vector<CutLine> cut_at_y0(const TriangleMesh& mesh)
     return lines;
 }
 
+TriangleMesh ribbon(const std::vector<CutLine>& lines, double half)
+{
+    TriangleMesh mesh;
+    const Vec3d across(0.0, half, 0.0);
+    for (const CutLine& line : lines) {
+        const int first = static_cast<int>(mesh.vertices.size()), count = static_cast<int>(line.points.size());
+        for (const Vec2d& p : line.points) {
+            mesh.vertices.emplace_back(in_space(p) - across);
+            mesh.vertices.emplace_back(in_space(p) + across);
+        }
+        for (int k = 0; k < count - (line.closed ? 0 : 1); ++k) {
+            const int p = first + 2 * k, q = first + 2 * ((k + 1) % count);
+            mesh.triangles.push_back({p, q + 1, q});
+            mesh.triangles.push_back({p, p + 1, q + 1});
+        }
+    }
+    return mesh;
+}
+
 double enclosed_area(const std::vector<CutLine>& lines)
 {
     double area = 0.0;

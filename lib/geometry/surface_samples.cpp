@@ -4,6 +4,7 @@
 #include "geometry/crease_samples.hpp"
 #include "geometry/layer_samples.hpp"
 #include "geometry/outline_samples.hpp"
+#include "geometry/sheet_sides.hpp"
 
 #include <algorithm>
 #include <array>
@@ -37,16 +38,23 @@ void require_valid(const SurfaceSampleSettings& settings)
     require(settings.dimensions == 2 || settings.dimensions == 3, "dimensions must be 2 or 3", settings.dimensions);
 }
 
-SurfaceSamples samples_at(const std::vector<OffsetPoint>& points)
+/// `sides`: one set of points, or of a sheet one for each side.
+SurfaceSamples samples_at(const std::vector<std::vector<OffsetPoint>>& sides, bool is_sheet)
 {
     SurfaceSamples samples;
     std::size_t thin = 0;
-    for (const OffsetPoint& point : points) {
-        samples.positions.push_back(point.position);
-        samples.depth.push_back(point.depth);
-        thin += point.thin ? 1 : 0;
+    for (std::size_t side = 0; side < sides.size(); ++side) {
+        for (const OffsetPoint& point : sides[side]) {
+            samples.positions.push_back(point.position);
+            samples.depth.push_back(point.depth);
+            thin += point.thin ? 1 : 0;
+            if (!is_sheet) continue;
+            samples.normal.push_back(-point.direction);
+            samples.side.push_back(static_cast<std::int32_t>(side));
+        }
     }
-    if (!points.empty()) samples.thin_fraction = static_cast<double>(thin) / static_cast<double>(points.size());
+    const auto count = static_cast<double>(samples.positions.size());
+    if (thin > 0) samples.thin_fraction = static_cast<double>(thin) / count;
     return samples;
 }
 
@@ -57,28 +65,53 @@ SurfaceSamples sample_surface(const SurfaceQuery& surface, const SurfaceSampleSe
 {
     require_valid(settings);
     if (settings.dimensions == 3) return SurfaceSampler(surface, settings, 1e300).sample(0, workers).samples;
-    std::vector<OffsetPoint> points = sample_outline(surface, settings);
-    if (has_wrong_side(settings, topology(surface.mesh()))) drop_wrong_side(points, surface, settings);
-    return samples_at(points);
+    std::vector<std::vector<OffsetPoint>> points = sample_outline(surface, settings);
+    const bool is_sheet = points.size() > 1;
+    if (!is_sheet && has_wrong_side(settings, topology(surface.mesh())))
+        drop_wrong_side(points.front(), surface, settings);
+    return samples_at(points, is_sheet);
 }
 
 struct SurfaceSampler::Impl {
     static constexpr double kMargin = 5.0; ///< spacings around a part in which it is chosen as well, and dropped
 
+    /// A side of a sheet, or all of a surface that is none.
+    struct Side {
+        std::unique_ptr<const SurfaceQuery> own; ///< surface of a sheet's side
+        SurfaceSampleSettings settings;
+        OffsetSurface offset;
+        bool drops_wrong_side;
+        std::vector<OffsetPoint> creases;
+        std::vector<std::vector<OffsetPoint>> borders; ///< of each part that was sampled: its samples near other parts
+
+        Side(const SurfaceQuery& surface, const SurfaceSampleSettings& given)
+            : settings(given), offset(surface, given), drops_wrong_side(has_wrong_side(given, offset.topology())),
+              creases(sample_creases(offset, given.spacing))
+        {
+        }
+        /// Only the reference of OffsetSurface to `surface` is kept.
+        Side(std::unique_ptr<const SurfaceQuery> surface, const SurfaceSampleSettings& given) : Side(*surface, given)
+        {
+            own = std::move(surface);
+        }
+    };
+
     const SurfaceQuery& surface;
     SurfaceSampleSettings settings;
-    OffsetSurface offset;
-    bool drops_wrong_side;
-    std::vector<OffsetPoint> creases;
+    std::vector<Side> sides;
+    bool is_sheet;
     Vec3d low, part_size;
     std::array<int, 3> counts{};
     std::vector<char> is_sampled;
-    std::vector<std::vector<OffsetPoint>> borders; ///< of each part that was sampled: its samples near other parts
 
-    Impl(const SurfaceQuery& of, const SurfaceSampleSettings& given, double size)
-        : surface(of), settings(given), offset(of, given), drops_wrong_side(has_wrong_side(given, offset.topology())),
-          creases(sample_creases(offset, given.spacing))
+    Impl(const SurfaceQuery& of, const SurfaceSampleSettings& given, double size) : surface(of), settings(given)
     {
+        SurfaceSampleSettings of_side = given;
+        of_side.solid = SurfaceSampleSettings::Solid::inside;
+        for (const TriangleMesh& side : sheet_sides(of, given).sides)
+            sides.emplace_back(std::make_unique<const SurfaceQuery>(side), of_side);
+        is_sheet = !sides.empty();
+        if (!is_sheet) sides.emplace_back(of, given);
         const Aabb box = surface.bounds();
         low = box.min;
         std::size_t total = 1;
@@ -89,7 +122,7 @@ struct SurfaceSampler::Impl {
             total *= static_cast<std::size_t>(counts[axis]);
         }
         is_sampled.assign(total, 0);
-        borders.resize(total);
+        for (Side& side : sides) side.borders.resize(total);
     }
 
     [[nodiscard]] int along(int axis, double x) const
@@ -109,6 +142,14 @@ struct SurfaceSampler::Impl {
     {
         return index(along(0, p.x()), along(1, p.y()), along(2, p.z()));
     }
+    void visit_parts(const Aabb& box, FunctionRef<void(std::size_t part)> visit) const
+    {
+        for (int z = along(2, box.min.z()); z <= along(2, box.max.z()); ++z)
+            for (int y = along(1, box.min.y()); y <= along(1, box.max.y()); ++y)
+                for (int x = along(0, box.min.x()); x <= along(0, box.max.x()); ++x) visit(index(x, y, z));
+    }
+    void sample_side(Side& side, std::size_t part, const LayerPart& layer, const Workers& workers,
+                     std::vector<OffsetPoint>& own, std::vector<OffsetPoint>& around);
     /// Parts at the border have all that is beyond.
     [[nodiscard]] Aabb box_of(std::size_t part) const
     {
@@ -148,10 +189,7 @@ bool SurfaceSampler::is_sampled(std::size_t part) const
 
 void SurfaceSampler::visit_parts(const Aabb& box, FunctionRef<void(std::size_t part)> visit) const
 {
-    const Impl& impl = *impl_;
-    for (int z = impl.along(2, box.min.z()); z <= impl.along(2, box.max.z()); ++z)
-        for (int y = impl.along(1, box.min.y()); y <= impl.along(1, box.max.y()); ++y)
-            for (int x = impl.along(0, box.min.x()); x <= impl.along(0, box.max.x()); ++x) visit(impl.index(x, y, z));
+    impl_->visit_parts(box, visit);
 }
 
 SurfaceSampler::Part SurfaceSampler::sample(std::size_t part, const Workers& workers)
@@ -168,32 +206,44 @@ SurfaceSampler::Part SurfaceSampler::sample(std::size_t part, const Workers& wor
         beyond[side / 2] = (side % 2 == 0 ? layer.region.min : layer.region.max)[side / 2];
         layer.is_continued[static_cast<std::size_t>(side)] = is_sampled(impl.part_of(beyond));
     }
+    std::vector<std::vector<OffsetPoint>> own, around;
+    for (Impl::Side& side : impl.sides) {
+        own.emplace_back();
+        around.emplace_back();
+        impl.sample_side(side, part, layer, workers, own.back(), around.back());
+    }
+    impl.is_sampled[part] = 1;
+    return {samples_at(own, impl.is_sheet), samples_at(around, impl.is_sheet)};
+}
+
+/// Of a side the samples in the part, and those around it.
+void SurfaceSampler::Impl::sample_side(Side& side, std::size_t part, const LayerPart& layer, const Workers& workers,
+                                       std::vector<OffsetPoint>& own, std::vector<OffsetPoint>& around)
+{
     std::vector<OffsetPoint> fixed;
     visit_parts(layer.region, [&](std::size_t other) {
-        for (const OffsetPoint& point : impl.borders[other])
+        for (const OffsetPoint& point : side.borders[other])
             if (layer.region.contains(point.position)) fixed.push_back(point);
     });
     const auto known = static_cast<std::ptrdiff_t>(fixed.size());
-    for (const OffsetPoint& point : impl.creases)
-        if (layer.region.contains(point.position) && !is_sampled(impl.part_of(point.position))) fixed.push_back(point);
-    std::vector<OffsetPoint> all = sample_layer(impl.offset, impl.settings, std::move(fixed), layer, workers);
+    for (const OffsetPoint& point : side.creases)
+        if (layer.region.contains(point.position) && is_sampled[part_of(point.position)] == 0) fixed.push_back(point);
+    std::vector<OffsetPoint> all = sample_layer(side.offset, side.settings, std::move(fixed), layer, workers);
 
-    std::vector<OffsetPoint> own, around(all.begin(), all.begin() + known);
+    around.assign(all.begin(), all.begin() + known);
     for (auto point = all.begin() + known; point != all.end(); ++point) {
-        const std::size_t at = impl.part_of(point->position);
+        const std::size_t at = part_of(point->position);
         // What fills a gap just beyond the border of a part that has its samples is not dropped.
-        const bool fills_gap = is_sampled(at) && layer.moves.contains(point->position);
+        const bool fills_gap = is_sampled[at] != 0 && layer.moves.contains(point->position);
         (at == part || fills_gap ? own : around).push_back(*point);
     }
-    if (impl.drops_wrong_side) {
-        drop_wrong_side(own, impl.surface, impl.settings);
-        drop_wrong_side(around, impl.surface, impl.settings);
+    if (side.drops_wrong_side) {
+        drop_wrong_side(own, side.offset.surface(), side.settings);
+        drop_wrong_side(around, side.offset.surface(), side.settings);
     }
-    const Aabb core = box.inflated(-Impl::kMargin * d);
+    const Aabb core = box_of(part).inflated(-kMargin * settings.spacing);
     for (const OffsetPoint& point : own)
-        if (!core.contains(point.position)) impl.borders[part].push_back(point);
-    impl.is_sampled[part] = 1;
-    return {samples_at(own), samples_at(around)};
+        if (!core.contains(point.position)) side.borders[part].push_back(point);
 }
 
 } // namespace flotsam

@@ -66,4 +66,12 @@ std::vector<double> sample_volumes(std::span<const Vec3d> positions, std::span<c
     return volumes;
 }
 
+double rim_weight(double thickness, KernelKind kind, double particle_spacing, int dimensions)
+{
+    // Samples of one layer stand for factor / (integral over their plane) of depth.
+    const double layer = boundary_calibration(kind, dimensions).volume /
+                         plane_integral(Kernel(kind, particle_spacing, dimensions), 0.0, dimensions);
+    return std::min(1.0, thickness / (2.0 * layer));
+}
+
 } // namespace flotsam

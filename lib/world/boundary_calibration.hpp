@@ -26,4 +26,8 @@ struct BoundaryCalibration {
 [[nodiscard]] std::vector<double> sample_volumes(std::span<const Vec3d> positions, std::span<const double> depths,
                                                  KernelKind kernel, double particle_spacing, int dimensions);
 
+/// How much of the samples of a sheet water beyond its rim feels: the two layers stand for the half spaces behind two
+/// faces, and beyond the rim for what is between these, of the sheet's thickness [m].
+[[nodiscard]] double rim_weight(double thickness, KernelKind kernel, double particle_spacing, int dimensions);
+
 } // namespace flotsam

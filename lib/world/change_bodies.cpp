@@ -37,6 +37,7 @@ void FluidWorld::remove_body(int number)
     BodySurface& body = impl_->body(number);
     body.mesh = {};
     body.query.reset();
+    body.sheet.reset();
     body.last_pose.reset();
     body.is_changed = false;
     const std::size_t owner = impl_->walls.size() + static_cast<std::size_t>(number);
@@ -78,6 +79,9 @@ void FluidWorld::Impl::remove_samples(std::size_t owner)
     keep_others(boundary.velocity, is_dropped);
     keep_others(boundary.position_body, is_dropped);
     keep_others(boundary.owner, is_dropped);
+    if (boundary.normal.empty()) return;
+    keep_others(boundary.normal, is_dropped);
+    keep_others(boundary.normal_body, is_dropped);
 }
 
 /// Bodies that were added or reshaped get their samples; water in the place of those and of bodies that were put

@@ -14,6 +14,7 @@
 #include "sph/pressure/pressure_system.hpp"
 #include "sph/pressure/response_preconditioner.hpp"
 #include "world/keep_ledger.hpp"
+#include "world/sheet_screen.hpp"
 #include "world/wall_guard.hpp"
 
 #include <algorithm>
@@ -35,6 +36,7 @@ struct Wall {
     std::unique_ptr<SurfaceQuery> query;
     std::unique_ptr<SurfaceSampler> sampler; ///< of parts that no water has come near yet; null: there are none
     bool is_noted_thin = false;
+    std::unique_ptr<Sheet> sheet; ///< null: it is none
 };
 
 /// A body's surface about its centre of mass.
@@ -42,6 +44,7 @@ struct BodySurface {
     TriangleMesh mesh; ///< empty: removed
     std::string name;  ///< in notes
     std::unique_ptr<SurfaceQuery> query;
+    std::unique_ptr<Sheet> sheet;  ///< null: it is none
     bool is_changed = false;       ///< added or reshaped since the last step
     std::optional<Pose> last_pose; ///< at the end of the last step, as the fluid had it
 
@@ -98,6 +101,7 @@ struct FluidWorld::Impl {
     CellLists fluid_cells, boundary_cells;
     NeighbourSearch search;
     Pairs fluid_pairs, boundary_pairs;
+    SheetScreen screen;
     std::size_t paired_samples = 0; ///< boundary samples that there were when boundary_pairs was found
     ContactBuilder contact_builder;
     Contacts contacts;
@@ -184,6 +188,8 @@ struct FluidWorld::Impl {
     [[nodiscard]] double sample_inset() const;
     [[nodiscard]] SurfaceSampleSettings sample_settings(SurfaceSampleSettings::Solid solid) const;
     void add_samples(std::size_t owner, const SurfaceSamples& samples, const SurfaceSamples& around);
+    [[nodiscard]] std::vector<double> volumes_of(const SurfaceSamples& samples, const SurfaceSamples& around) const;
+    [[nodiscard]] std::unique_ptr<Sheet> sheet_of(const SurfaceQuery& query, SurfaceSampleSettings::Solid solid) const;
     void note_thin(const std::string& name, double fraction);
 
     // settle.cpp
@@ -209,6 +215,7 @@ struct FluidWorld::Impl {
     void read_bodies(double dt, Bodies& port);
     void place_body_samples();
     void find_neighbours();
+    void hide_behind_sheets();
     void sort_particles();
     void measure_density(StepReport& report);
     void add_forces(double dt, Bodies& port, StepReport& report);

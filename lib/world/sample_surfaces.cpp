@@ -2,6 +2,7 @@
 
 #include "world/boundary_calibration.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <sstream>
@@ -26,21 +27,61 @@ SurfaceSampleSettings FluidWorld::Impl::sample_settings(SurfaceSampleSettings::S
 /// `around`: samples of the same surface that are not to be added, but count in the volumes of those that are.
 void FluidWorld::Impl::add_samples(std::size_t owner, const SurfaceSamples& samples, const SurfaceSamples& around)
 {
-    std::vector<Vec3d> positions = samples.positions;
-    std::vector<double> depths = samples.depth;
-    positions.insert(positions.end(), around.positions.begin(), around.positions.end());
-    depths.insert(depths.end(), around.depth.begin(), around.depth.end());
-    const std::vector<double> volumes =
-        sample_volumes(positions, depths, settings.kernel, spacing(), settings.dimensions);
+    const std::vector<double> volumes = volumes_of(samples, around);
+    const bool is_sheet = !samples.normal.empty();
+    if (is_sheet) {
+        boundary.normal.resize(boundary.size(), Vec4::Zero());
+        boundary.normal_body.resize(boundary.size(), Vec4::Zero());
+    }
     for (std::size_t b = 0; b < samples.positions.size(); ++b) {
         Vec4 position = Vec4::Zero();
-        position.head<3>() = positions[b].cast<Scalar>();
+        position.head<3>() = samples.positions[b].cast<Scalar>();
         boundary.position.push_back(position);
         boundary.volume.push_back(static_cast<Scalar>(volumes[b]));
         boundary.velocity.push_back(Vec4::Zero());
         boundary.owner.push_back(static_cast<std::int32_t>(owner));
-        boundary.position_body.push_back(positions[b]);
+        boundary.position_body.push_back(samples.positions[b]);
+        if (!is_sheet) continue;
+        Vec4 normal;
+        normal << samples.normal[b].cast<Scalar>(), static_cast<Scalar>(samples.depth[b]);
+        boundary.normal.push_back(normal);
+        normal[3] = static_cast<Scalar>(samples.side[b]);
+        boundary.normal_body.push_back(normal);
     }
+    if (boundary.normal.empty()) return;
+    boundary.normal.resize(boundary.size(), Vec4::Zero());
+    boundary.normal_body.resize(boundary.size(), Vec4::Zero());
+}
+
+/// Of the first ones; the sides of a sheet each for itself.
+std::vector<double> FluidWorld::Impl::volumes_of(const SurfaceSamples& samples, const SurfaceSamples& around) const
+{
+    std::vector<double> volumes(samples.positions.size());
+    const auto sides = samples.side.empty() ? 1 : 1 + *std::max_element(samples.side.begin(), samples.side.end());
+    for (std::int32_t side = 0; side < sides; ++side) {
+        std::vector<Vec3d> positions;
+        std::vector<double> depths;
+        std::vector<std::size_t> numbers;
+        const auto take = [&](const SurfaceSamples& from, std::size_t b) {
+            if (!from.side.empty() && from.side[b] != side) return false;
+            positions.push_back(from.positions[b]);
+            depths.push_back(from.depth[b]);
+            return true;
+        };
+        for (std::size_t b = 0; b < samples.positions.size(); ++b)
+            if (take(samples, b)) numbers.push_back(b);
+        for (std::size_t b = 0; b < around.positions.size(); ++b) take(around, b);
+        const std::vector<double> found =
+            sample_volumes(positions, depths, settings.kernel, spacing(), settings.dimensions);
+        for (std::size_t k = 0; k < numbers.size(); ++k) volumes[numbers[k]] = found[k];
+    }
+    return volumes;
+}
+
+std::unique_ptr<Sheet> FluidWorld::Impl::sheet_of(const SurfaceQuery& query, SurfaceSampleSettings::Solid solid) const
+{
+    const SheetSides sides = sheet_sides(query, sample_settings(solid));
+    return sides.sides.empty() ? nullptr : std::make_unique<Sheet>(sides, spacing());
 }
 
 void FluidWorld::Impl::note_thin(const std::string& name, double fraction)
@@ -55,6 +96,7 @@ void FluidWorld::Impl::note_thin(const std::string& name, double fraction)
 void FluidWorld::Impl::sample_body(std::size_t k)
 {
     if (!bodies[k].query) return; // removed
+    bodies[k].sheet = sheet_of(*bodies[k].query, SurfaceSampleSettings::Solid::inside);
     const SurfaceSamples samples =
         sample_surface(*bodies[k].query, sample_settings(SurfaceSampleSettings::Solid::inside), workers);
     add_samples(walls.size() + k, samples, {});
@@ -78,6 +120,7 @@ void FluidWorld::Impl::prepare_wall_samples(std::size_t k)
                         : wall.side == WallSide::outside ? Solid::inside
                                                          : Solid::both;
     const SurfaceSampleSettings sampling = sample_settings(solid);
+    wall.sheet = sheet_of(*wall.query, solid);
     if (settings.dimensions == 3) {
         wall.sampler = std::make_unique<SurfaceSampler>(*wall.query, sampling, kPart * spacing());
         return;

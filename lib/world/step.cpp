@@ -2,6 +2,7 @@
 
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/sph/density.hpp"
+#include "world/boundary_calibration.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -96,6 +97,9 @@ void FluidWorld::Impl::place_body_samples()
         boundary.velocity[b].head<3>() = twists[owner].at(arm).cast<Scalar>();
         // A turn of a rounding error out of the plane would put samples into other cells.
         if (settings.dimensions == 2) boundary.position[b][1] = boundary.velocity[b][1] = 0;
+        if (boundary.normal.empty()) return;
+        const Vec3d normal = pose.orientation * boundary.normal_body[b].head<3>().cast<double>();
+        boundary.normal[b].head<3>() = normal.cast<Scalar>();
     });
 }
 
@@ -111,6 +115,20 @@ void FluidWorld::Impl::find_neighbours()
         search.find(spline, grid, fluid_cells, fluid.position, true, {}, workers, fluid_pairs);
         search.find(spline, grid, boundary_cells, fluid.position, false, boundary.volume, workers, boundary_pairs);
     });
+    hide_behind_sheets();
+}
+
+void FluidWorld::Impl::hide_behind_sheets()
+{
+    if (boundary.normal.empty()) return;
+    const auto hide = [&](std::size_t owner, const Sheet* sheet, const Pose& pose) {
+        if (sheet == nullptr) return;
+        const double rim = rim_weight(sheet->thickness(), settings.kernel, spacing(), settings.dimensions);
+        screen.hide({owner, *sheet, pose, rim}, kernel, fluid.position, boundary, workers, fluid_pairs, boundary_pairs);
+    };
+    for (std::size_t k = 0; k < walls.size(); ++k) hide(k, walls[k].sheet.get(), Pose{});
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+        if (bodies[k].query) hide(walls.size() + k, bodies[k].sheet.get(), states[k].pose);
 }
 
 void FluidWorld::Impl::sort_particles()

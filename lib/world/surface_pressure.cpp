@@ -2,6 +2,7 @@
 
 #include "flotsam/core/contracts.hpp"
 #include "geometry/point_grid.hpp"
+#include "geometry/triangle_pieces.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -10,38 +11,6 @@
 
 namespace flotsam {
 namespace {
-
-/// A part of a triangle, about a spacing wide.
-struct Piece {
-    Vec3d center;
-    Vec3d normal;
-    double area;
-    std::size_t triangle;
-};
-
-/// Each triangle in n^2 equal parts, n so that none has an edge longer than `max_edge`.
-std::vector<Piece> pieces_of(const TriangleMesh& mesh, double max_edge)
-{
-    std::vector<Piece> pieces;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const Vec3d a = mesh.corner(t, 0), u = mesh.corner(t, 1) - a, v = mesh.corner(t, 2) - a;
-        const Vec3d normal = u.cross(v);
-        const double twice_area = normal.norm();
-        if (!(twice_area > 0.0)) continue;
-        const double longest = std::sqrt(std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()}));
-        const int n = std::max(1, static_cast<int>(std::ceil(longest / max_edge)));
-        const double area = 0.5 * twice_area / (n * n);
-        for (int row = 0; row < n; ++row) {
-            for (int k = 0; k < 2 * (n - row) - 1; ++k) {
-                // Along a row parts stand in turn upright and on their heads.
-                const double third = k % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
-                const double x = (k / 2 + third) / n, y = (row + third) / n;
-                pieces.push_back({a + x * u + y * v, normal / twice_area, area, t});
-            }
-        }
-    }
-    return pieces;
-}
 
 /// Inverse of a symmetric matrix of trace 1 where its eigenvalues are well above 0.1, and 0 where they are well below:
 /// a surface that hardly bends takes no force along itself.
@@ -63,7 +32,7 @@ class PressureSpread {
         : pieces_(pieces_of(mesh, spacing)), grid_(centers(pieces_, dimensions), radius), radius_(radius),
           force_(mesh.triangles.size(), 0.0), area_(mesh.triangles.size(), 0.0)
     {
-        for (const Piece& piece : pieces_) area_[piece.triangle] += piece.area;
+        for (const TrianglePiece& piece : pieces_) area_[piece.triangle] += piece.area;
     }
 
     /// `force` at a point of the solid. With w the weights of the parts that it presses on, sum w = 1, part q gets
@@ -74,7 +43,7 @@ class PressureSpread {
         Mat3d spanned = Mat3d::Zero();
         double weights = 0.0;
         grid_.for_near(at, radius_, [&](std::size_t q, double distance_sq) {
-            const Piece& piece = pieces_[q];
+            const TrianglePiece& piece = pieces_[q];
             if (!(piece.normal.dot(force) < 0.0)) return; // the far side of a sheet, say
             const double weight = piece.area * std::pow(1.0 - distance_sq / (radius_ * radius_), 3);
             near_.push_back({q, weight});
@@ -95,18 +64,18 @@ class PressureSpread {
     }
 
   private:
-    static std::vector<Vec3d> centers(std::vector<Piece>& pieces, int dimensions)
+    static std::vector<Vec3d> centers(std::vector<TrianglePiece>& pieces, int dimensions)
     {
         std::vector<Vec3d> points;
         points.reserve(pieces.size());
-        for (Piece& piece : pieces) {
+        for (TrianglePiece& piece : pieces) {
             if (dimensions == 2) piece.center.y() = 0.0;
             points.push_back(piece.center);
         }
         return points;
     }
 
-    std::vector<Piece> pieces_;
+    std::vector<TrianglePiece> pieces_;
     PointGrid grid_;
     double radius_;
     std::vector<double> force_, area_; ///< of each triangle

@@ -18,7 +18,7 @@ struct SurfaceSampleSettings {
     enum class Solid {
         inside,  ///< the solid is behind the triangles (against their normals): a body
         outside, ///< the solid is in front of them: a container around the water
-        both     ///< water on both sides of a sheet: samples lie on it
+        both     ///< water on both sides of a sheet; without inset samples lie on it
     } solid = Solid::inside;
     std::uint64_t seed = 1; ///< of the random candidates
 };
@@ -27,13 +27,17 @@ struct SurfaceSamples {
     std::vector<Vec3d> positions; ///< [m], mesh frame
     std::vector<double> depth;    ///< of each below the surface [m]; < inset where the solid is thin
     double thin_fraction = 0.0;   ///< of the samples that sit in the middle of a part thinner than 2 insets
+    /// Of sheets, else empty: unit, from each sample to the face that it stands for, whose water alone may feel it.
+    std::vector<Vec3d> normal;
+    std::vector<std::int32_t> side; ///< of sheets, else empty: the face's number
 };
 
 /// Blue-noise (Poisson disk) samples of the surface that lies `inset` deep in the solid, one per spacing squared: no
 /// two closer than 0.75 spacings, no point of the surface farther than about 0.85 from one. Around bends of more than
 /// 180 degrees (the outside of a container) the surface is round; along its sharp edges and at the rims of open sheets
-/// samples stand in rows, with one in each corner. Where the solid is thinner than two insets they lie in its middle,
-/// in one layer. In two dimensions they stand at equal steps along the outline. The same input gives the same samples,
+/// samples stand in rows, with one in each corner. Sheets (what has water on both sides, and shells and plates thinner
+/// than two insets) have a layer for each side, an inset behind it as behind any face, whatever is there. Where other
+/// solids are thinner than two insets they lie in its middle, in one layer. In two dimensions they stand at equal steps along the outline. The same input gives the same samples,
 /// whatever `workers`.
 /// **Source:** Yuksel 2015 (sample elimination), then repulsion along the surface.
 ///

@@ -2,6 +2,7 @@
 
 #include "flotsam/geometry/triangle_mesh.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -24,6 +25,21 @@ inline TriangleMesh open_box(const Vec3d& low, const Vec3d& high)
 {
     TriangleMesh mesh = box(low, high);
     mesh.triangles.resize(10);
+    return mesh;
+}
+
+/// Closed shell of an open box, its walls and floor `thick`, inside the outer box; welded at its vertices.
+inline TriangleMesh open_shell(const Vec3d& low, const Vec3d& high, double thick)
+{
+    TriangleMesh mesh = open_box(low, high);
+    const Vec3d inset(thick, thick, 0.0);
+    const TriangleMesh inner = open_box(low + inset + Vec3d(0, 0, thick), high - inset);
+    mesh.vertices.insert(mesh.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+    for (const auto& t : inner.triangles) mesh.triangles.push_back({t[0] + 8, t[2] + 8, t[1] + 8});
+    for (const auto& [a, b] : {std::array<int, 2>{4, 5}, {5, 7}, {7, 6}, {6, 4}}) { // the rim
+        mesh.triangles.push_back({a, b, b + 8});
+        mesh.triangles.push_back({a, b + 8, a + 8});
+    }
     return mesh;
 }
 

@@ -174,27 +174,68 @@ TEST_CASE("a sheet with water on both sides carries its samples", "[geometry][su
         CHECK(samples.depth[b] == 0.0);
     }
     check_even(query, samples, settings);
-    SurfaceSampleSettings inset = settings; // without a side to be inset to
-    inset.inset = 0.5 * kD;
-    CHECK(hash(sample_surface(query, inset)) == hash(samples));
+    CHECK(samples.side.empty());
 }
 
-TEST_CASE("a plate thinner than two insets has one layer in its middle", "[geometry][surface_samples]")
+/// The samples of one side of a sheet.
+SurfaceSamples side_of(const SurfaceSamples& samples, int side)
+{
+    SurfaceSamples part;
+    for (std::size_t b = 0; b < samples.positions.size(); ++b) {
+        if (samples.side[b] != side) continue;
+        part.positions.push_back(samples.positions[b]);
+        part.depth.push_back(samples.depth[b]);
+        part.normal.push_back(samples.normal[b]);
+    }
+    return part;
+}
+
+TEST_CASE("the sides of a sheet have a layer each, behind the face", "[geometry][surface_samples]")
+{
+    const int dimensions = GENERATE(2, 3);
+    const bool open = GENERATE(false, true); // of no thickness, or of 0.6 spacings
+    CAPTURE(dimensions, open);
+    const Vec3d low = kD * Vec3d(-10, -10, 0), high = kD * Vec3d(10, 10, 8);
+    const SurfaceQuery query(open ? meshes::open_box(low, high) : meshes::open_shell(low, high, 0.6 * kD));
+    const SurfaceSamples samples =
+        sample_surface(query, at_half_spacing(open ? Solid::both : Solid::inside, dimensions));
+    CHECK(samples.thin_fraction == 0.0);
+    REQUIRE(samples.side.size() == samples.positions.size());
+    REQUIRE(samples.normal.size() == samples.positions.size());
+    CHECK(*std::max_element(samples.side.begin(), samples.side.end()) == 1);
+    for (int side = 0; side < 2; ++side) {
+        const SurfaceSamples layer = side_of(samples, side);
+        REQUIRE(layer.positions.size() > (dimensions == 2 ? 30u : 800u));
+        CHECK(nearest_neighbours(layer).front() > 0.74);
+        int outward = 0;
+        for (std::size_t b = 0; b < layer.positions.size(); ++b) {
+            const Vec3d face = layer.positions[b] + layer.depth[b] * layer.normal[b];
+            CHECK(layer.depth[b] == Approx(0.5 * kD).epsilon(1e-3));
+            CHECK(query.closest(face).distance <
+                  0.21 * kD); // rows under edges are deeper than the depth along the normal
+            outward += layer.normal[b].dot(face - Vec3d(0, 0, 4.0 * kD)) > 0.0 ? 1 : -1;
+        }
+        // One side faces out everywhere, the other in.
+        CHECK(std::abs(outward) == static_cast<int>(layer.positions.size()));
+    }
+}
+
+TEST_CASE("a plate thinner than two insets has two layers, a thick one is no sheet", "[geometry][surface_samples]")
 {
     const SurfaceQuery plate(centred_box(10.0, 10.0, 0.6));
     const SurfaceSamples samples = sample_surface(plate, at_half_spacing(Solid::inside));
-    CHECK(samples.thin_fraction == 1.0);
+    CHECK(samples.thin_fraction == 0.0);
+    REQUIRE_FALSE(samples.side.empty());
     for (std::size_t b = 0; b < samples.positions.size(); ++b) {
-        CHECK(samples.depth[b] == Approx(0.3 * kD).epsilon(0.01));
-        CHECK(std::abs(samples.positions[b].z()) < 0.01 * kD);
+        CHECK(samples.normal[b].cwiseAbs().z() == Approx(1.0));
+        CHECK(samples.positions[b].z() == Approx(-0.2 * kD * samples.normal[b].z()).epsilon(1e-3)); // 0.3 - 0.5
     }
-    CHECK(static_cast<double>(samples.positions.size()) ==
-          Approx(9.4 * 9.4).epsilon(0.1)); // 0.3 spacings off the sides
-    CHECK(nearest_neighbours(samples).front() > 0.74);
+    CHECK(static_cast<double>(samples.positions.size()) == Approx(2.0 * 10.5 * 10.5).epsilon(0.1)); // rows at the rim
 
     const SurfaceSamples thick =
         sample_surface(SurfaceQuery(centred_box(10.0, 10.0, 2.5)), at_half_spacing(Solid::inside));
     CHECK(thick.thin_fraction == 0.0);
+    CHECK(thick.side.empty());
 }
 
 TEST_CASE("rods and specks have samples inside", "[geometry][surface_samples]")
@@ -344,11 +385,12 @@ TEST_CASE("outlines in two dimensions are even", "[geometry][surface_samples][2d
 
 TEST_CASE("thin parts in two dimensions have one row", "[geometry][surface_samples][2d]")
 {
-    const SurfaceSamples plate =
-        sample_surface(SurfaceQuery(centred_box(10.0, 10.0, 0.6)), at_half_spacing(Solid::inside, 2));
-    CHECK(plate.positions.size() == 10);
-    CHECK(plate.thin_fraction == 1.0);
-    for (const Vec3d& p : plate.positions) CHECK(std::abs(p.z()) < 1e-3 * kD);
+    const SurfaceSamples bar =
+        sample_surface(SurfaceQuery(centred_box(0.95, 10.0, 0.6)), at_half_spacing(Solid::inside, 2));
+    CHECK(bar.positions.size() >= 1);
+    CHECK(bar.positions.size() <= 2);
+    CHECK(bar.thin_fraction == 1.0);
+    for (const Vec3d& p : bar.positions) CHECK(std::abs(p.z()) < 0.05 * kD);
 
     const SurfaceSamples speck =
         sample_surface(SurfaceQuery(centred_box(0.6, 10.0, 0.6)), at_half_spacing(Solid::inside, 2));

@@ -250,7 +250,7 @@ TEST_CASE("blocks of fluid that overlap fill their union once", "[scene][run]")
 
 TEST_CASE("notes call bodies and walls by their names", "[scene][run]")
 {
-    const RunReport report = ran(kRaft, {"bodies.0.shape.box=[0.3,0.01]", "bodies.0.position=[0.5,0.5]"});
+    const RunReport report = ran(kRaft, {"bodies.0.shape.box=[0.01,0.01]", "bodies.0.position=[0.5,0.5]"});
     REQUIRE(report.notes.size() == 1);
     CHECK(report.notes[0].find("bodies[0] (\"raft\") is thinner") == 0);
 }

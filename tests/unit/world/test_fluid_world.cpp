@@ -281,9 +281,9 @@ TEST_CASE("in two dimensions a body feels the water when rounding has turned it 
 TEST_CASE("notes call walls and bodies by their names", "[world]")
 {
     FluidWorld fluid = tank(plane());
-    const Vec3d edges(0.1, 1.0, 0.01);
+    const Vec3d edges(0.01, 1.0, 0.01); // a rod
     fluid.add_body(tessellate(BoxShape{edges}, kSpacing));
-    fluid.name_body(fluid.add_body(tessellate(BoxShape{edges}, kSpacing)), "the sheet");
+    fluid.name_body(fluid.add_body(tessellate(BoxShape{edges}, kSpacing)), "the rod");
     CHECK_THROWS_AS(fluid.name_body(2, "nobody"), std::invalid_argument);
     CHECK_THROWS_AS(fluid.name_wall(1, "nothing"), std::invalid_argument);
     fluid.name_wall(0, "the tank");
@@ -291,7 +291,7 @@ TEST_CASE("notes call walls and bodies by their names", "[world]")
     fluid.prepare(bodies);
     REQUIRE(fluid.notes().size() == 2);
     CHECK(fluid.notes()[0].rfind("body 0 is thinner", 0) == 0);
-    CHECK(fluid.notes()[1].rfind("the sheet is thinner", 0) == 0);
+    CHECK(fluid.notes()[1].rfind("the rod is thinner", 0) == 0);
 }
 
 TEST_CASE("a tank crowded with bodies has a water line where it is open", "[world]")

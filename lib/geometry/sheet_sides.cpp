@@ -1,0 +1,236 @@
+#include "geometry/sheet_sides.hpp"
+
+#include "geometry/mesh_connectivity.hpp"
+#include "geometry/offset_surface.hpp"
+#include "geometry/plane_cut.hpp"
+#include "geometry/triangle_pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace flotsam {
+namespace {
+
+constexpr double kOpposite = -0.5;     ///< cosine of two normals below which faces are opposite
+constexpr double kSameFace = 0.766;    ///< cosine of 40 degrees: neighbours that bend less are one face
+constexpr double kLeastThin = 0.2;     ///< of the surface, for a sheet
+constexpr double kMostSame = 0.02;     ///< of the thin surface, that may have its own side opposite
+constexpr double kFirstLooks = 2000.0; ///< at most, before all of a surface is looked at
+constexpr int kPiecesOfFirstLook = 3, kPiecesAlong = 8; ///< an edge of a triangle, at most
+
+class Sets {
+  public:
+    explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t(0)); }
+    std::size_t find(std::size_t k)
+    {
+        while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
+        return k;
+    }
+    void join(std::size_t a, std::size_t b) { parent_[std::max(find(a), find(b))] = std::min(find(a), find(b)); }
+
+  private:
+    std::vector<std::size_t> parent_;
+};
+
+/// Where a surface has an opposite face within two insets.
+struct Thinness {
+    struct Pair {
+        std::size_t triangle, opposite;
+        double area, distance;
+    };
+    std::vector<Pair> pairs;
+    std::vector<double> area; ///< of each triangle [m^2]
+    std::vector<double> thin; ///< what of it has an opposite face
+    std::vector<double> bare; ///< what has none, although no ball of the inset fits below
+};
+
+class ThinnessProbe {
+  public:
+    ThinnessProbe(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
+        : surface_(surface), spacing_(settings.spacing), offset_(surface, settings)
+    {
+    }
+
+    /// By some pieces, at equal steps of area: most surfaces are thick.
+    [[nodiscard]] bool is_mostly_thick() const
+    {
+        const std::vector<TrianglePiece> pieces = pieces_of(surface_.mesh(), spacing_, kPiecesOfFirstLook);
+        double all = 0.0, met = 0.0, asked = 0.0;
+        for (const TrianglePiece& piece : pieces) all += piece.area;
+        int looks = 0, thin = 0;
+        for (const TrianglePiece& piece : pieces) {
+            met += piece.area;
+            if (kFirstLooks * met < (asked + 1.0) * all) continue;
+            asked = std::floor(kFirstLooks * met / all);
+            thin += opposite(piece) ? 1 : 0;
+            ++looks;
+        }
+        return thin < kLeastThin * looks;
+    }
+
+    [[nodiscard]] Thinness thinness() const
+    {
+        const std::size_t count = surface_.mesh().triangles.size();
+        const std::vector<double> none(count, 0.0);
+        Thinness result{{}, none, none, none};
+        for (const TrianglePiece& piece : pieces_of(surface_.mesh(), spacing_, kPiecesAlong)) {
+            result.area[piece.triangle] += piece.area;
+            if (const auto other = opposite(piece)) {
+                result.thin[piece.triangle] += piece.area;
+                result.pairs.push_back({piece.triangle, other->triangle, piece.area, other->distance});
+            } else if (!offset_.below(piece.center, -piece.normal)) {
+                result.bare[piece.triangle] += piece.area;
+            }
+        }
+        return result;
+    }
+
+    [[nodiscard]] const OffsetSurface& offset() const { return offset_; }
+
+  private:
+    struct Opposite {
+        std::size_t triangle;
+        double distance;
+    };
+    [[nodiscard]] std::optional<Opposite> opposite(const TrianglePiece& piece) const
+    {
+        const Vec3d inward = -piece.normal;
+        const double reach = 2.0 * offset_.inset();
+        const auto hit = surface_.sweep(piece.center + 1e-6 * reach * inward, piece.center + reach * inward);
+        if (!hit) return std::nullopt;
+        const auto t = static_cast<std::size_t>(hit->triangle);
+        if (offset_.inward(t).dot(inward) > kOpposite) return std::nullopt;
+        return Opposite{t, hit->fraction * reach};
+    }
+
+    const SurfaceQuery& surface_;
+    double spacing_;
+    OffsetSurface offset_;
+};
+
+/// Calls visit(a, b) for each two triangles that share an edge.
+template <class Visit>
+void visit_neighbours(const TriangleAdjacency& adjacency, Visit&& visit)
+{
+    for (std::size_t t = 0; t < adjacency.neighbours.size(); ++t)
+        for (const TriangleAdjacency::Neighbour& other : adjacency.neighbours[t])
+            if (other.triangle > static_cast<int>(t)) visit(t, static_cast<std::size_t>(other.triangle));
+}
+
+/// Vertices at the same place as one.
+TriangleMesh welded(TriangleMesh mesh, const MeshTopology& topology)
+{
+    for (std::array<int, 3>& triangle : mesh.triangles)
+        for (int& vertex : triangle) vertex = topology.first_at_place[static_cast<std::size_t>(vertex)];
+    return mesh;
+}
+
+/// Triangles of the narrow faces that lie between opposite ones.
+std::vector<char> find_rims(const Thinness& surface, const TriangleAdjacency& adjacency, const OffsetSurface& offset)
+{
+    const std::size_t count = surface.area.size();
+    Sets faces(count);
+    visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
+        if (offset.inward(a).dot(offset.inward(b)) > kSameFace) faces.join(a, b);
+    });
+    std::vector<double> area(count, 0.0), thin(count, 0.0), bare(count, 0.0);
+    for (std::size_t t = 0; t < count; ++t) {
+        const std::size_t face = faces.find(t);
+        area[face] += surface.area[t];
+        thin[face] += surface.thin[t];
+        bare[face] += surface.bare[t];
+    }
+    std::map<std::size_t, std::vector<std::size_t>> opposites, beside; // of each face, the faces
+    for (const Thinness::Pair& pair : surface.pairs)
+        opposites[faces.find(pair.triangle)].push_back(faces.find(pair.opposite));
+    visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
+        beside[faces.find(a)].push_back(faces.find(b));
+        beside[faces.find(b)].push_back(faces.find(a));
+    });
+    for (auto* lists : {&opposites, &beside}) {
+        for (auto& [face, list] : *lists) {
+            std::sort(list.begin(), list.end());
+            list.erase(std::unique(list.begin(), list.end()), list.end());
+        }
+    }
+    const auto joins_opposites = [&](std::size_t face) {
+        const std::vector<std::size_t>& around = beside[face];
+        return std::any_of(around.begin(), around.end(), [&](std::size_t other) {
+            const std::vector<std::size_t>& across = opposites[other];
+            return other != face && std::any_of(across.begin(), across.end(), [&](std::size_t third) {
+                       return third != face && std::binary_search(around.begin(), around.end(), third);
+                   });
+        });
+    };
+    std::vector<char> is_rim(count, 0);
+    for (std::size_t t = 0; t < count; ++t) {
+        const std::size_t face = faces.find(t);
+        const bool narrow = thin[face] < 0.2 * area[face] && bare[face] > 0.5 * area[face];
+        is_rim[t] = narrow && joins_opposites(face) ? 1 : 0;
+    }
+    return is_rim;
+}
+
+TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<std::size_t>& triangles)
+{
+    TriangleMesh part;
+    std::map<int, int> number;
+    for (const std::size_t t : triangles) {
+        std::array<int, 3> corners{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int vertex = mesh.triangles[t][k];
+            const auto [at, is_new] = number.emplace(vertex, static_cast<int>(part.vertices.size()));
+            if (is_new) part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(vertex)]);
+            corners[k] = at->second;
+        }
+        part.triangles.push_back(corners);
+    }
+    return part;
+}
+
+SheetSides sides_of_shell(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
+{
+    const TriangleMesh& mesh = surface.mesh();
+    const ThinnessProbe probe(surface, settings);
+    if (probe.is_mostly_thick()) return {};
+    const Thinness thinness = probe.thinness();
+    const TriangleMesh joined_up = welded(mesh, probe.offset().topology());
+    const TriangleAdjacency adjacency = triangle_adjacency(joined_up);
+    const std::vector<char> is_rim = find_rims(thinness, adjacency, probe.offset());
+    Sets sides(mesh.triangles.size());
+    visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
+        if (is_rim[a] == 0 && is_rim[b] == 0) sides.join(a, b);
+    });
+    double thin = 0.0, same = 0.0, distance = 0.0;
+    for (const Thinness::Pair& pair : thinness.pairs) {
+        thin += pair.area;
+        distance += pair.area * pair.distance;
+        if (sides.find(pair.triangle) == sides.find(pair.opposite)) same += pair.area;
+    }
+    if (same > kMostSame * thin) return {};
+    std::map<std::size_t, std::vector<std::size_t>> triangles;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        if (is_rim[t] == 0) triangles[sides.find(t)].push_back(t);
+    SheetSides result;
+    for (const auto& [first, part] : triangles) result.sides.push_back(part_of(joined_up, part));
+    result.thickness = distance / thin;
+    return result;
+}
+
+} // namespace
+
+SheetSides sheet_sides(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
+{
+    using Solid = SurfaceSampleSettings::Solid;
+    if (settings.inset == 0.0 || settings.solid == Solid::outside) return {};
+    const auto split = [&](const SurfaceQuery& of) {
+        if (settings.solid == Solid::both) return SheetSides{{of.mesh(), flipped(of.mesh())}, 0.0};
+        return sides_of_shell(of, settings);
+    };
+    if (settings.dimensions == 3) return split(surface);
+    return split(SurfaceQuery(ribbon(cut_at_y0(surface.mesh()), surface.bounds().size().maxCoeff())));
+}
+
+} // namespace flotsam
