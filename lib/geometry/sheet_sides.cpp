@@ -1,5 +1,6 @@
 #include "geometry/sheet_sides.hpp"
 
+#include "geometry/disjoint_sets.hpp"
 #include "geometry/mesh_connectivity.hpp"
 #include "geometry/offset_surface.hpp"
 #include "geometry/plane_cut.hpp"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 namespace flotsam {
 namespace {
@@ -19,20 +19,6 @@ constexpr double kLeastThin = 0.2;     ///< of the surface, for a sheet
 constexpr double kMostSame = 0.02;     ///< of the thin surface, that may have its own side opposite
 constexpr double kFirstLooks = 2000.0; ///< at most, before all of a surface is looked at
 constexpr int kPiecesOfFirstLook = 3, kPiecesAlong = 8; ///< an edge of a triangle, at most
-
-class Sets {
-  public:
-    explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t(0)); }
-    std::size_t find(std::size_t k)
-    {
-        while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
-        return k;
-    }
-    void join(std::size_t a, std::size_t b) { parent_[std::max(find(a), find(b))] = std::min(find(a), find(b)); }
-
-  private:
-    std::vector<std::size_t> parent_;
-};
 
 /// Where a surface has an opposite face within two insets.
 struct Thinness {
@@ -131,7 +117,7 @@ TriangleMesh welded(TriangleMesh mesh, const MeshTopology& topology)
 std::vector<char> find_rims(const Thinness& surface, const TriangleAdjacency& adjacency, const OffsetSurface& offset)
 {
     const std::size_t count = surface.area.size();
-    Sets faces(count);
+    DisjointSets faces(count);
     visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
         if (offset.inward(a).dot(offset.inward(b)) > kSameFace) faces.join(a, b);
     });
@@ -199,7 +185,7 @@ SheetSides sides_of_shell(const SurfaceQuery& surface, const SurfaceSampleSettin
     const TriangleMesh joined_up = welded(mesh, probe.offset().topology());
     const TriangleAdjacency adjacency = triangle_adjacency(joined_up);
     const std::vector<char> is_rim = find_rims(thinness, adjacency, probe.offset());
-    Sets sides(mesh.triangles.size());
+    DisjointSets sides(mesh.triangles.size());
     visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
         if (is_rim[a] == 0 && is_rim[b] == 0) sides.join(a, b);
     });

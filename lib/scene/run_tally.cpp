@@ -12,6 +12,7 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// A water line is a median of many levels: not one for each step.
 constexpr int kDraftsMeasured = 32;
+constexpr int kLevelsTried = 16; ///< for basins
 
 void add_seconds(StageSeconds& sum, const StageSeconds& step)
 {
@@ -22,6 +23,38 @@ void add_seconds(StageSeconds& sum, const StageSeconds& step)
     sum.pressure += step.pressure;
     sum.advance += step.advance;
     sum.walls += step.walls;
+}
+
+/// Whether the mesh has a basin: at the water line if that is above the lowest of its basins, else she is flooded.
+bool is_vessel(const TriangleMesh& mesh, const Pose& pose, double waterline)
+{
+    const auto has_basin = [&](double level) {
+        const std::vector<char> found = basins(mesh, pose, level);
+        return std::find(found.begin(), found.end(), 1) != found.end();
+    };
+    if (has_basin(waterline)) return true;
+    const Aabb range = bounds(transformed(mesh, pose));
+    for (int k = 1; k < kLevelsTried; ++k) {
+        const double level = range.min.z() + k * range.size().z() / kLevelsTried;
+        if (has_basin(level)) return level > waterline;
+    }
+    return false;
+}
+
+/// Particles that have triangles of the basins straight below them, and nothing else in between.
+std::size_t count_above(const std::vector<char>& is_basin, const TriangleMesh& mesh, const Pose& pose,
+                        const FluidState& fluid)
+{
+    const SurfaceQuery surface(transformed(mesh, pose));
+    const Aabb& bounds = surface.bounds();
+    std::size_t count = 0;
+    for (const Vec4& position : fluid.position) {
+        const Vec3d at = position.head<3>().cast<double>();
+        if (!bounds.contains(at)) continue;
+        const auto hit = surface.sweep(at, Vec3d(at.x(), at.y(), bounds.min.z() - 1.0));
+        if (hit && is_basin[static_cast<std::size_t>(hit->triangle)] != 0) ++count;
+    }
+    return count;
 }
 
 } // namespace
@@ -155,8 +188,21 @@ BodyReport RunTally::report_body(std::size_t k) const
     if (!(body.mass > 0.0)) return report;
     report.mass = body.mass;
     if (!is_level(scene_.gravity)) return report;
-    report.exact_draft = equilibrium_draft(body.mesh, now.pose.orientation, body.mass / scene_.fluid.density);
+    report.exact_draft = exact_draft(body, now.pose, report.waterline);
     return report;
+}
+
+/// Of a vessel with what water is in her.
+std::optional<double> RunTally::exact_draft(const PreparedBody& body, const Pose& pose,
+                                            std::optional<double> waterline) const
+{
+    const double density = scene_.fluid.density;
+    if (!waterline || !is_vessel(body.mesh, pose, *waterline))
+        return equilibrium_draft(body.mesh, pose.orientation, body.mass / density);
+    const FluidState& fluid = world_.fluid().fluid();
+    const std::size_t aboard = count_above(basins(body.mesh, pose, *waterline), body.mesh, pose, fluid);
+    const double mass = body.mass + fluid.particle_mass * static_cast<double>(aboard);
+    return vessel_draft(body.mesh, pose, *waterline, mass / density);
 }
 
 JointReport RunTally::report_joint(std::size_t k) const

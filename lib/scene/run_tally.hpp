@@ -57,6 +57,8 @@ class RunTally {
     void measure_drafts(double dt);
     void report_fluid(RunReport& report) const;
     [[nodiscard]] BodyReport report_body(std::size_t k) const;
+    [[nodiscard]] std::optional<double> exact_draft(const PreparedBody& body, const Pose& pose,
+                                                    std::optional<double> waterline) const;
     [[nodiscard]] JointReport report_joint(std::size_t k) const;
 
     const SceneFile& scene_;

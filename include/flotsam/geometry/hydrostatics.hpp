@@ -3,6 +3,7 @@
 #include "flotsam/geometry/triangle_mesh.hpp"
 
 #include <optional>
+#include <vector>
 
 namespace flotsam {
 
@@ -48,5 +49,16 @@ struct Waterplane {
 /// below the water [m]. Nothing if it displaces less than that when wholly under water: it sinks.
 [[nodiscard]] std::optional<double> equilibrium_draft(const TriangleMesh& closed, const Quatd& orientation,
                                                       double displaced_volume);
+
+/// Triangles of basins: 1 for each of a part of the surface below the water that hangs together with none of what
+/// bounds the solid from outside, 0 for others. Water outside does not come to it: the inside of a boat whose rim is
+/// above the water, a cavity. `pose` places mesh points in the world.
+[[nodiscard]] std::vector<char> basins(const TriangleMesh& closed, const Pose& pose, double water_level);
+
+/// As equilibrium_draft, of a vessel whose basins hold nothing but what `displaced_volume` [m^3] counts with her: they
+/// displace water, too. `pose` and `water_level` are about where she floats. Nothing if she sinks, or founders, as the
+/// water comes over her rim first.
+[[nodiscard]] std::optional<double> vessel_draft(const TriangleMesh& closed, const Pose& pose, double water_level,
+                                                 double displaced_volume);
 
 } // namespace flotsam

@@ -21,7 +21,8 @@ struct BodyReport {
     double tilt_deg = 0.0;                   ///< between the shape's z axis and the world's
     std::optional<double> waterline;         ///< mean height of the undisturbed water [m]
     std::optional<double> draft;             ///< mean of waterline - lowest point [m]
-    std::optional<double> exact_draft;       ///< of the exact mesh in the pose it ended in [m]; nothing: it sinks
+    /// Of the exact mesh in the pose it ended in, a vessel with the water that is in her [m]; nothing: it sinks.
+    std::optional<double> exact_draft;
     Vec3d force_fluid_mean = Vec3d::Zero();  ///< [N]
     Vec3d torque_fluid_mean = Vec3d::Zero(); ///< about the centre of mass [N m]
 };

@@ -2,10 +2,12 @@
 #include "scene_texts.hpp"
 #include "support/catch.hpp"
 #include "support_directory.hpp"
+#include "unit/geometry/sample_meshes.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <sstream>
 
@@ -248,9 +250,34 @@ TEST_CASE("blocks of fluid that overlap fill their union once", "[scene][run]")
     CHECK(report.notes[0].find("100 fluid particles lay in an earlier block") == 0);
 }
 
+TEST_CASE("the exact draft of a vessel counts her hollow, and the water in her", "[scene][run]")
+{
+    // A box without lid of 0.3 x 0.2 m; the first one is let down into the water, the other holds some of it.
+    const std::filesystem::path file = std::filesystem::temp_directory_path() / "flotsam_test_vessel.obj";
+    {
+        std::ofstream out(file);
+        const TriangleMesh mesh = test_meshes::open_shell(Vec3d(-0.15, -0.1, -0.06), Vec3d(0.15, 0.1, 0.06), 0.01);
+        for (const Vec3d& v : mesh.vertices) out << "v " << v.x() << " " << v.y() << " " << v.z() << "\n";
+        for (const auto& t : mesh.triangles) out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+    }
+    const bool dry = GENERATE(true, false);
+    CAPTURE(dry);
+    const double mass = 3.0, bottom = dry ? 0.155 : 0.1;
+    std::ostringstream text;
+    text << R"({"flotsam": 1, "dimensions": 3, "particle_spacing": 0.02, "duration": 0.02,
+        "fluids": [{"name": "water", "density": 1000, "blocks": [{"min": [0, 0, 0], "max": [0.8, 0.6, 0.16]}]}],
+        "walls": [{"box": {"min": [0, 0, 0], "max": [0.8, 0.6, 0.5], "open": ["+z"]}}],
+        "bodies": [{"name": "vessel", "shape": {"mesh": {"file": ")"
+         << file.string() << R"("}}, "mass": )" << mass << R"(, "position": [0.4, 0.3, )" << bottom + 0.06 << "]}]}";
+    const RunReport report = ran(text.str(), {});
+    std::filesystem::remove(file);
+    const double inside = dry ? 0.0 : 0.28 * 0.18 * (0.16 - bottom - 0.01); // m^3, but for what the planks cut away
+    CHECK(report.bodies.at(0).exact_draft.value() == Approx((mass / 1000 + inside) / 0.06).epsilon(dry ? 1e-4 : 0.1));
+}
+
 TEST_CASE("notes call bodies and walls by their names", "[scene][run]")
 {
-    const RunReport report = ran(kRaft, {"bodies.0.shape.box=[0.01,0.01]", "bodies.0.position=[0.5,0.5]"});
+    const RunReport report = ran(kCrate, {"bodies.0.shape.box=[0.3,0.04,0.04]", "bodies.0.position=[0.5,0.5,0.8]"});
     REQUIRE(report.notes.size() == 1);
-    CHECK(report.notes[0].find("bodies[0] (\"raft\") is thinner") == 0);
+    CHECK(report.notes[0].find("bodies[0] (\"crate\") is thinner") == 0);
 }
