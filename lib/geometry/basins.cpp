@@ -6,6 +6,7 @@
 #include "geometry/submerged_moments.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace flotsam {
@@ -18,6 +19,25 @@ struct WettedParts {
     std::vector<std::size_t> part; ///< of each triangle; kDry: it is above the water
     std::vector<double> volume;    ///< that each part bounds with the water plane [m^3]; < 0: outside of the solid
 };
+
+/// Volume between a triangle's part below the water and the water plane, positive where the triangle looks down [m^3].
+double column(const std::array<Vec3d, 3>& corners, double water_level)
+{
+    std::array<Vec3d, 4> wet; // of three corners at most two are below with two crossings, or three
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d &a = corners[k], &b = corners[(k + 1) % 3];
+        const double depth_a = water_level - a.z(), depth_b = water_level - b.z();
+        if (depth_a > 0.0) wet[count++] = a;
+        if ((depth_a > 0.0) != (depth_b > 0.0)) wet[count++] = a + depth_a / (depth_a - depth_b) * (b - a);
+    }
+    double sum = 0.0;
+    for (std::size_t k = 2; k < count; ++k) {
+        const Vec3d area = 0.5 * (wet[k - 1] - wet[0]).cross(wet[k] - wet[0]);
+        sum -= area.z() * (water_level - (wet[0].z() + wet[k - 1].z() + wet[k].z()) / 3.0);
+    }
+    return sum;
+}
 
 WettedParts wetted_parts(const TriangleMesh& mesh, const Pose& pose, double water_level)
 {
@@ -36,15 +56,13 @@ WettedParts wetted_parts(const TriangleMesh& mesh, const Pose& pose, double wate
         }
     WettedParts result{std::vector<std::size_t>(mesh.triangles.size(), WettedParts::kDry),
                        std::vector<double>(mesh.vertices.size(), 0.0)};
-    TriangleMesh one;
-    one.triangles = {{0, 1, 2}};
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         for (std::size_t k = 0; k < 3; ++k)
             if (const std::size_t v = vertex(t, k); is_below[v] != 0) result.part[t] = sets.find(v);
         if (result.part[t] == WettedParts::kDry) continue;
-        // The lids in the water plane add nothing: volumes are about a point in it.
-        one.vertices = {mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
-        result.volume[result.part[t]] += submerged_moments(one, pose, water_level).volume;
+        const std::array<Vec3d, 3> corners = {pose.to_world(mesh.corner(t, 0)), pose.to_world(mesh.corner(t, 1)),
+                                              pose.to_world(mesh.corner(t, 2))};
+        result.volume[result.part[t]] += column(corners, water_level);
     }
     return result;
 }

@@ -1,5 +1,6 @@
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/geometry/equilibrium_poses.hpp"
+#include "geometry/basin_query.hpp"
 #include "scene/prepared_scene.hpp"
 #include "scene/probe_points.hpp"
 
@@ -30,9 +31,21 @@ FloatingBody floating(const PreparedBody& body, const SceneFile& scene)
     return result;
 }
 
+/// As it is turned, at the draft of a vessel whose basins are dry; nothing for what is none, sinks or founders.
+std::optional<Pose> pose_as_vessel(const PreparedBody& body, const SceneFile& scene, double level)
+{
+    const TriangleMesh hull = hull_of(body.mesh, scene.dimensions);
+    Pose pose = body.start;
+    pose.position.z() += level - lowest_point(body.mesh, body.start);
+    const auto draft = vessel_draft(hull, pose, level, body.mass / scene.fluid.density);
+    if (!draft) return std::nullopt;
+    pose.position.z() -= *draft;
+    return BasinQuery(hull, pose, level).empty() ? std::nullopt : std::optional<Pose>(pose);
+}
+
 /// Where the body may float in water whose surface is at `level`, the best first: the stable pose that it comes to from
-/// the one that it is given, unless it may not turn about both horizontal axes, and its height as it is turned. Empty
-/// for one that sinks.
+/// the one that it is given, unless it may not turn about both horizontal axes, and its height as it is turned; a
+/// vessel at her draft as she is turned. Empty for one that sinks.
 std::vector<Pose> poses_afloat(const PreparedBody& body, const std::array<bool, 6>& lock, const SceneFile& scene,
                                double level)
 {
@@ -40,6 +53,8 @@ std::vector<Pose> poses_afloat(const PreparedBody& body, const std::array<bool, 
     const Quatd& given = body.start.orientation;
     const bool turns = scene.dimensions == 2 ? !lock[4] : !lock[3] && !lock[4];
     std::vector<Pose> poses;
+    if (const auto vessel = pose_as_vessel(body, scene, level)) return {*vessel};
+    if (!(body.mass < scene.fluid.density * body.volume)) return {};
     try {
         // What lies as well in any direction (a disc, a ball) is left as it is turned.
         const int all_directions = scene.dimensions == 2 ? 1 : 2;
@@ -145,7 +160,7 @@ std::string float_body(std::size_t k, const SceneFile& scene, PreparedScene& pre
     const std::optional<double> level = level_at(prepared, reach_of(body));
     if (!level) return "no block or mesh of fluid is under its middle";
     const Pose given = body.start;
-    std::string obstacle;
+    std::string obstacle = "it is not lighter than the water";
     for (const Pose& pose : poses_afloat(body, scene.bodies[k].lock, scene, *level)) {
         body.start = pose;
         const PreparedBody* other = touching.neighbour_of(k);
@@ -183,9 +198,7 @@ void float_bodies(const SceneFile& scene, PreparedScene& prepared)
         const PreparedBody& body = prepared.bodies[k];
         if (scene.bodies[k].motion != SceneBody::Motion::dynamic) continue;
         const Pose given = body.start;
-        const bool floats = body.mass < scene.fluid.density * body.volume;
-        const std::string obstacle =
-            floats ? float_body(k, scene, prepared, touching) : "it is not lighter than the water";
+        const std::string obstacle = float_body(k, scene, prepared, touching);
         const std::string note = note_of_move(body, given, scene.particle_spacing);
         if (!obstacle.empty())
             prepared.notes.push_back(body.name + " stays as given in a scene that starts at rest: " + obstacle);

@@ -1,6 +1,6 @@
 #include "scene/run_tally.hpp"
 
-#include "flotsam/geometry/hydrostatics.hpp"
+#include "geometry/basin_query.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,36 +25,19 @@ void add_seconds(StageSeconds& sum, const StageSeconds& step)
     sum.walls += step.walls;
 }
 
-/// Whether the mesh has a basin: at the water line if that is above the lowest of its basins, else she is flooded.
-bool is_vessel(const TriangleMesh& mesh, const Pose& pose, double waterline)
+/// The basins of a vessel about as high as the water line: those there, or the highest above it. Nothing for what has
+/// none, and for a vessel that is flooded: she has some below the water line only.
+std::optional<BasinQuery> basins_about(const TriangleMesh& hull, const Pose& pose, double waterline)
 {
-    const auto has_basin = [&](double level) {
-        const std::vector<char> found = basins(mesh, pose, level);
-        return std::find(found.begin(), found.end(), 1) != found.end();
-    };
-    if (has_basin(waterline)) return true;
-    const Aabb range = bounds(transformed(mesh, pose));
-    for (int k = 1; k < kLevelsTried; ++k) {
-        const double level = range.min.z() + k * range.size().z() / kLevelsTried;
-        if (has_basin(level)) return level > waterline;
+    const Aabb range = bounds(transformed(hull, pose));
+    std::vector<double> levels = {waterline};
+    for (int k = kLevelsTried - 1; k > 0; --k) levels.push_back(range.min.z() + k * range.size().z() / kLevelsTried);
+    for (const double level : levels) {
+        if (level < waterline) break;
+        BasinQuery query(hull, pose, level);
+        if (!query.empty()) return query;
     }
-    return false;
-}
-
-/// Particles that have triangles of the basins straight below them, and nothing else in between.
-std::size_t count_above(const std::vector<char>& is_basin, const TriangleMesh& mesh, const Pose& pose,
-                        const FluidState& fluid)
-{
-    const SurfaceQuery surface(transformed(mesh, pose));
-    const Aabb& bounds = surface.bounds();
-    std::size_t count = 0;
-    for (const Vec4& position : fluid.position) {
-        const Vec3d at = position.head<3>().cast<double>();
-        if (!bounds.contains(at)) continue;
-        const auto hit = surface.sweep(at, Vec3d(at.x(), at.y(), bounds.min.z() - 1.0));
-        if (hit && is_basin[static_cast<std::size_t>(hit->triangle)] != 0) ++count;
-    }
-    return count;
+    return std::nullopt;
 }
 
 } // namespace
@@ -197,12 +180,15 @@ std::optional<double> RunTally::exact_draft(const PreparedBody& body, const Pose
                                             std::optional<double> waterline) const
 {
     const double density = scene_.fluid.density;
-    if (!waterline || !is_vessel(body.mesh, pose, *waterline))
-        return equilibrium_draft(body.mesh, pose.orientation, body.mass / density);
+    const TriangleMesh hull = hull_of(body.mesh, scene_.dimensions);
+    const auto basin = waterline ? basins_about(hull, pose, *waterline) : std::nullopt;
+    if (!basin) return equilibrium_draft(body.mesh, pose.orientation, body.mass / density);
     const FluidState& fluid = world_.fluid().fluid();
-    const std::size_t aboard = count_above(basins(body.mesh, pose, *waterline), body.mesh, pose, fluid);
+    const auto aboard = std::count_if(fluid.position.begin(), fluid.position.end(), [&](const Vec4& position) {
+        return basin->holds(position.head<3>().cast<double>());
+    });
     const double mass = body.mass + fluid.particle_mass * static_cast<double>(aboard);
-    return vessel_draft(body.mesh, pose, *waterline, mass / density);
+    return vessel_draft(hull, pose, *waterline, mass / density);
 }
 
 JointReport RunTally::report_joint(std::size_t k) const

@@ -7,6 +7,7 @@
 #include "flotsam/sph/kernel.hpp"
 #include "flotsam/sph/neighbourhood.hpp"
 #include "flotsam/world/fluid_world.hpp"
+#include "geometry/basin_query.hpp"
 #include "sph/contacts.hpp"
 #include "sph/forces/packing_stress.hpp"
 #include "sph/forces/viscosity.hpp"
@@ -54,6 +55,13 @@ struct BodySurface {
         const Aabb box = query->bounds();
         return box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
     }
+};
+
+/// A body with basins that the water around it does not reach.
+struct Vessel {
+    std::size_t body;
+    Aabb bounds; ///< in the world
+    BasinQuery basins;
 };
 
 /// Water that was asked for, before it is cut.
@@ -169,6 +177,8 @@ struct FluidWorld::Impl {
     void prepare(Bodies& port, const std::function<void(const SettleProgress&)>& on_round = {});
     void choose_wall_sides();
     void seed_where_dry(FluidSeed seed);
+    [[nodiscard]] std::vector<Vessel> find_vessels() const;
+    void bail_out(const FluidSeed& seed, const std::vector<Vessel>& vessels, std::vector<char>& keep);
     void cut_and_place_fluid();
     void look_around(StepReport& report);
     void relax(int max_rounds);

@@ -4,6 +4,7 @@
 #include "flotsam/geometry/mass_properties.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -53,6 +54,21 @@ std::optional<double> volume_within(const Wall& wall, int dimensions)
         volume *= wall.box->size()[axis];
     }
     return volume;
+}
+
+Aabb extent_of(const std::vector<Vec3d>& points)
+{
+    Aabb box;
+    for (const Vec3d& point : points) box.extend(point);
+    return box;
+}
+
+/// Whether particles in `water` are all around a body, and under it or beside its lowest point.
+bool surrounds(const Aabb& water, const Aabb& body, int dimensions)
+{
+    const bool along_x = water.min.x() < body.min.x() && water.max.x() > body.max.x();
+    const bool along_y = dimensions == 2 || (water.min.y() < body.min.y() && water.max.y() > body.max.y());
+    return along_x && along_y && water.min.z() < body.max.z();
 }
 
 } // namespace
@@ -134,22 +150,63 @@ bool FluidWorld::Impl::in_body(std::size_t k, const Pose& pose, const Vec3d& poi
     return std::fmod(std::abs(std::floor(cell.x()) + std::floor(cell.y()) + std::floor(cell.z())), 2.0) > 0.5;
 }
 
+/// Water around a vessel does not fill her: takes what lies in her basins out of `keep`.
+void FluidWorld::Impl::bail_out(const FluidSeed& seed, const std::vector<Vessel>& vessels, std::vector<char>& keep)
+{
+    const Aabb water = extent_of(seed.positions);
+    for (const Vessel& vessel : vessels) {
+        if (!surrounds(water, vessel.bounds, settings.dimensions)) continue;
+        std::atomic<std::size_t> count = 0;
+        workers.for_each(keep.size(), [&](std::size_t k) {
+            if (keep[k] == 0 || !vessel.basins.holds(seed.positions[k], 0.01 * spacing())) return;
+            keep[k] = 0;
+            count.fetch_add(1, std::memory_order_relaxed);
+        });
+        if (count == 0) continue;
+        std::ostringstream note;
+        note << bodies[vessel.body].name << " starts dry: " << count << " fluid particles in it were left out";
+        notes.push_back(note.str());
+    }
+}
+
+/// Bodies with basins whose rims are above the water around them.
+std::vector<Vessel> FluidWorld::Impl::find_vessels() const
+{
+    std::vector<Vessel> vessels;
+    if (!is_level(settings.gravity)) return vessels;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        if (!bodies[k].query) continue; // removed
+        const TriangleMesh hull = hull_of(bodies[k].mesh, settings.dimensions);
+        const Aabb extent = bounds(transformed(hull, states[k].pose));
+        double level = -std::numeric_limits<double>::infinity();
+        for (const FluidSeed& seed : seeds) {
+            const Aabb water = extent_of(seed.positions);
+            if (seed.cut && surrounds(water, extent, settings.dimensions))
+                level = std::max(level, water.max.z() + 0.5 * spacing());
+        }
+        if (!(level > extent.min.z())) continue;
+        Vessel vessel{k, extent, BasinQuery(hull, states[k].pose, level)};
+        if (!vessel.basins.empty()) vessels.push_back(std::move(vessel));
+    }
+    return vessels;
+}
+
 void FluidWorld::Impl::cut_and_place_fluid()
 {
     std::size_t cut_away = 0;
     std::vector<char> keep;
+    const std::vector<Vessel> vessels = find_vessels();
     for (const FluidSeed& seed : seeds) {
         keep.assign(seed.positions.size(), 1);
         if (seed.cut) {
             workers.for_each(keep.size(), [&](std::size_t k) { keep[k] = in_solid(seed.positions[k]) ? 0 : 1; });
+            cut_away += static_cast<std::size_t>(std::count(keep.begin(), keep.end(), 0));
+            bail_out(seed, vessels, keep);
         }
         const Vec4 velocity(static_cast<Scalar>(seed.velocity.x()), static_cast<Scalar>(seed.velocity.y()),
                             static_cast<Scalar>(seed.velocity.z()), Scalar(0));
         for (std::size_t k = 0; k < keep.size(); ++k) {
-            if (keep[k] == 0) {
-                ++cut_away;
-                continue;
-            }
+            if (keep[k] == 0) continue;
             Vec4 position = Vec4::Zero();
             position.head<3>() = seed.positions[k].cast<Scalar>();
             fluid.position.push_back(position);

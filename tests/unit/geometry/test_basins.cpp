@@ -1,6 +1,6 @@
 #include "support/catch.hpp"
 
-#include "flotsam/geometry/hydrostatics.hpp"
+#include "geometry/basin_query.hpp"
 #include "unit/geometry/sample_meshes.hpp"
 
 #include <algorithm>
@@ -69,4 +69,34 @@ TEST_CASE("a heeled boat, and a ball with a cavity, displace their hollows", "[g
     ball.vertices.insert(ball.vertices.end(), cavity.vertices.begin(), cavity.vertices.end());
     for (const auto& t : cavity.triangles) ball.triangles.push_back({t[0] + first, t[2] + first, t[1] + first});
     CHECK(vessel_draft(ball, Pose{}, 0.1, 0.5 * whole).value() == Approx(0.5).epsilon(1e-6));
+}
+
+TEST_CASE("what lies in a boat is told from what lies around her", "[geometry][hydrostatics]")
+{
+    const Pose pose{Vec3d(3, -2, 5), Quatd::Identity()};
+    const BasinQuery query(boat(), pose, 5.2);
+    REQUIRE_FALSE(query.empty());
+    const auto holds = [&](double x, double y, double z) { return query.holds(pose.to_world(Vec3d(x, y, z))); };
+    CHECK(holds(0, 0, 0.02));
+    CHECK(holds(0.48, -0.28, 0.3));
+    CHECK(holds(0.1, 0.1, 0.39)); // above the water, but below the rim
+    CHECK_FALSE(holds(0, 0, 0.5));
+    CHECK_FALSE(holds(0, 0, -0.02));
+    CHECK_FALSE(holds(0.55, 0, 0.2));
+    CHECK_FALSE(holds(0.495, 0, 0.2)); // in a plank
+    const Vec3d inner = pose.to_world(Vec3d(0.49, 0.1, 0.2)), outer = pose.to_world(Vec3d(0.5, 0.1, 0.2));
+    CHECK(query.holds(inner, 1e-3));
+    CHECK_FALSE(query.holds(outer, 1e-3));
+    CHECK(BasinQuery(boat(), pose, 5.5).empty());
+    CHECK_FALSE(BasinQuery(boat(), pose, 5.5).holds(pose.position + Vec3d(0, 0, 0.2)));
+}
+
+TEST_CASE("in two dimensions a vessel has no ends", "[geometry][hydrostatics][2d]")
+{
+    const TriangleMesh whole = meshes::prism({{-0.3, 0.0}, {0.3, 0.0}, {0.3, 0.4}, {-0.3, 0.4}}, 0.5);
+    CHECK(vessel_draft(hull_of(whole, 2), Pose{}, 0.1, 0.12).value() == Approx(0.2).epsilon(1e-9));
+    const TriangleMesh shell = meshes::open_shell(Vec3d(-0.3, -2, 0), Vec3d(0.3, 2, 0.4), 0.01);
+    const TriangleMesh hull = hull_of(shell, 2);
+    CHECK_FALSE(BasinQuery(hull, Pose{}, 0.2).empty());
+    CHECK(vessel_draft(hull, Pose{}, 0.1, 0.12).value() == Approx(0.2).epsilon(1e-9)); // a metre of it
 }

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
@@ -250,29 +250,45 @@ TEST_CASE("blocks of fluid that overlap fill their union once", "[scene][run]")
     CHECK(report.notes[0].find("100 fluid particles lay in an earlier block") == 0);
 }
 
+/// A box of sheet metal without lid, 0.3 x 0.2 x 0.12 m and 3 kg, its middle at the given height, in 0.16 m of water.
+std::string tub_text(const TemporaryDirectory& directory, double height, const std::string& start)
+{
+    const TriangleMesh mesh = test_meshes::open_shell(Vec3d(-0.15, -0.1, -0.06), Vec3d(0.15, 0.1, 0.06), 0.01);
+    std::ostringstream file, text;
+    for (const Vec3d& v : mesh.vertices) file << "v " << v.x() << " " << v.y() << " " << v.z() << "\n";
+    for (const auto& t : mesh.triangles) file << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+    directory.write("tub.obj", file.str());
+    text << R"({"flotsam": 1, "dimensions": 3, "particle_spacing": 0.02, "duration": 0.02, "start": ")" << start
+         << R"(", "fluids": [{"name": "water", "blocks": [{"min": [0, 0, 0], "max": [0.8, 0.6, 0.16]}]}],
+        "walls": [{"box": {"min": [0, 0, 0], "max": [0.8, 0.6, 0.5], "open": ["+z"]}}],
+        "bodies": [{"name": "tub", "shape": {"mesh": {"file": ")"
+         << (directory.path() / "tub.obj").string() << R"("}}, "mass": 3, "position": [0.4, 0.3, )" << height << "]}]}";
+    return text.str();
+}
+
 TEST_CASE("the exact draft of a vessel counts her hollow, and the water in her", "[scene][run]")
 {
-    // A box without lid of 0.3 x 0.2 m; the first one is let down into the water, the other holds some of it.
-    const std::filesystem::path file = std::filesystem::temp_directory_path() / "flotsam_test_vessel.obj";
-    {
-        std::ofstream out(file);
-        const TriangleMesh mesh = test_meshes::open_shell(Vec3d(-0.15, -0.1, -0.06), Vec3d(0.15, 0.1, 0.06), 0.01);
-        for (const Vec3d& v : mesh.vertices) out << "v " << v.x() << " " << v.y() << " " << v.z() << "\n";
-        for (const auto& t : mesh.triangles) out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
-    }
-    const bool dry = GENERATE(true, false);
-    CAPTURE(dry);
-    const double mass = 3.0, bottom = dry ? 0.155 : 0.1;
-    std::ostringstream text;
-    text << R"({"flotsam": 1, "dimensions": 3, "particle_spacing": 0.02, "duration": 0.02,
-        "fluids": [{"name": "water", "density": 1000, "blocks": [{"min": [0, 0, 0], "max": [0.8, 0.6, 0.16]}]}],
-        "walls": [{"box": {"min": [0, 0, 0], "max": [0.8, 0.6, 0.5], "open": ["+z"]}}],
-        "bodies": [{"name": "vessel", "shape": {"mesh": {"file": ")"
-         << file.string() << R"("}}, "mass": )" << mass << R"(, "position": [0.4, 0.3, )" << bottom + 0.06 << "]}]}";
-    const RunReport report = ran(text.str(), {});
-    std::filesystem::remove(file);
-    const double inside = dry ? 0.0 : 0.28 * 0.18 * (0.16 - bottom - 0.01); // m^3, but for what the planks cut away
-    CHECK(report.bodies.at(0).exact_draft.value() == Approx((mass / 1000 + inside) / 0.06).epsilon(dry ? 1e-4 : 0.1));
+    const TemporaryDirectory directory("flotsam_test_vessel");
+    const RunReport falling = ran(tub_text(directory, 0.4, "as_given"), {});
+    CHECK(falling.bodies.at(0).exact_draft.value() == Approx(0.05).epsilon(1e-4));
+    // With water put into her, a layer of 0.04 m.
+    const RunReport loaded = ran(
+        tub_text(directory, 0.18, "as_given"),
+        {R"(fluids.0.blocks=[{"min":[0,0,0],"max":[0.8,0.6,0.12]},{"min":[0.27,0.22,0.14],"max":[0.53,0.38,0.18]}])"});
+    CHECK(loaded.bodies.at(0).exact_draft.value() == Approx((3.0 + 0.26 * 0.16 * 40.0) / 60.0).epsilon(0.05));
+}
+
+TEST_CASE("a vessel of sheet metal starts at rest afloat and dry", "[scene][run]")
+{
+    const TemporaryDirectory directory("flotsam_test_vessel_at_rest");
+    const RunReport report = ran(tub_text(directory, 0.4, "at_rest"), {});
+    CHECK(report.bodies.at(0).draft.value() == Approx(0.05).margin(0.01));
+    const auto noted = [&](const std::string& words) {
+        return std::any_of(report.notes.begin(), report.notes.end(),
+                           [&](const std::string& note) { return note.find(words) != std::string::npos; });
+    };
+    CHECK(noted("bodies[0] (\"tub\") was moved down by 230 mm to where it floats"));
+    CHECK(noted("bodies[0] (\"tub\") starts dry: "));
 }
 
 TEST_CASE("notes call bodies and walls by their names", "[scene][run]")

@@ -7,6 +7,7 @@
 #include "world/boundary_calibration.hpp"
 #include "world/sheet_screen.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace flotsam;
@@ -230,4 +231,32 @@ TEST_CASE("a boat of sheet metal floats dry at the draft of its mass", "[world][
     // Within a quarter of a spacing, as other bodies.
     CHECK(mean / steps == Approx(draft).margin(0.25 * kD));
     CHECK(highest_density(world) < 1050.0);
+}
+
+TEST_CASE("water around a vessel does not fill her, water that is put into her stays", "[world][vessel]")
+{
+    // 10 x 10 x 8 spacings of a vessel; 4 spacings of draft, or wholly under water, or water put into her.
+    const int way = GENERATE(0, 1, 2);
+    CAPTURE(way);
+    const Vec3d half(0.1, 0.1, 0.08);
+    FluidWorld world(settings_of(3));
+    world.add_box_wall({Vec3d(0, 0, 0), Vec3d(0.4, 0.4, 0.5)}, {"+z"});
+    const double bottom = way == 0 ? 0.12 : way == 1 ? 0.02 : 0.25, level = 0.2;
+    world.add_block({Vec3d(0, 0, 0), Vec3d(0.4, 0.4, level)});
+    if (way == 2) world.add_block({Vec3d(0.12, 0.12, bottom + 0.02), Vec3d(0.28, 0.28, bottom + 0.1)});
+    world.name_body(world.add_body(meshes::open_shell(-half, half, 0.01)), "the tub");
+    FreeBodies bodies({free_box(2.0 * half, 500.0, Vec3d(0.2, 0.2, bottom + half.z()))}, Vec3d(0, 0, -9.81));
+    world.prepare(bodies);
+    int inside = 0;
+    for (const Vec4& p : world.fluid().position) {
+        const Vec3d at = p.head<3>().cast<double>() - Vec3d(0.2, 0.2, bottom);
+        inside += at.head<2>().cwiseAbs().maxCoeff() < 0.092 && at.z() > 0.008 && at.z() < 0.16 ? 1 : 0;
+    }
+    const bool is_noted = std::any_of(world.notes().begin(), world.notes().end(),
+                                      [](const std::string& note) { return note.rfind("the tub starts dry", 0) == 0; });
+    CHECK(is_noted == (way == 0));
+    if (way == 0)
+        CHECK(inside == 0);
+    else
+        CHECK(inside > (way == 1 ? 400 : 200));
 }
