@@ -4,6 +4,7 @@
 #include "flotsam/geometry/surface_query.hpp"
 
 #include <optional>
+#include <vector>
 
 namespace flotsam {
 

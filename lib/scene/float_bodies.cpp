@@ -1,6 +1,7 @@
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/geometry/equilibrium_poses.hpp"
 #include "geometry/basin_query.hpp"
+#include "geometry/wetted_surface.hpp"
 #include "scene/prepared_scene.hpp"
 #include "scene/probe_points.hpp"
 
@@ -37,10 +38,11 @@ std::optional<Pose> pose_as_vessel(const PreparedBody& body, const SceneFile& sc
     const TriangleMesh hull = hull_of(body.mesh, scene.dimensions);
     Pose pose = body.start;
     pose.position.z() += level - lowest_point(body.mesh, body.start);
+    if (!WettedSurface(hull, pose).level_of_basins(level)) return std::nullopt;
     const auto draft = vessel_draft(hull, pose, level, body.mass / scene.fluid.density);
     if (!draft) return std::nullopt;
     pose.position.z() -= *draft;
-    return BasinQuery(hull, pose, level).empty() ? std::nullopt : std::optional<Pose>(pose);
+    return WettedSurface(hull, pose).has_basin(level) ? std::optional<Pose>(pose) : std::nullopt;
 }
 
 /// Where the body may float in water whose surface is at `level`, the best first: the stable pose that it comes to from

@@ -1,6 +1,7 @@
 #include "scene/run_tally.hpp"
 
 #include "geometry/basin_query.hpp"
+#include "geometry/wetted_surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,6 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// A water line is a median of many levels: not one for each step.
 constexpr int kDraftsMeasured = 32;
-constexpr int kLevelsTried = 16; ///< for basins
 
 void add_seconds(StageSeconds& sum, const StageSeconds& step)
 {
@@ -23,21 +23,6 @@ void add_seconds(StageSeconds& sum, const StageSeconds& step)
     sum.pressure += step.pressure;
     sum.advance += step.advance;
     sum.walls += step.walls;
-}
-
-/// The basins of a vessel about as high as the water line: those there, or the highest above it. Nothing for what has
-/// none, and for a vessel that is flooded: she has some below the water line only.
-std::optional<BasinQuery> basins_about(const TriangleMesh& hull, const Pose& pose, double waterline)
-{
-    const Aabb range = bounds(transformed(hull, pose));
-    std::vector<double> levels = {waterline};
-    for (int k = kLevelsTried - 1; k > 0; --k) levels.push_back(range.min.z() + k * range.size().z() / kLevelsTried);
-    for (const double level : levels) {
-        if (level < waterline) break;
-        BasinQuery query(hull, pose, level);
-        if (!query.empty()) return query;
-    }
-    return std::nullopt;
 }
 
 } // namespace
@@ -181,11 +166,12 @@ std::optional<double> RunTally::exact_draft(const PreparedBody& body, const Pose
 {
     const double density = scene_.fluid.density;
     const TriangleMesh hull = hull_of(body.mesh, scene_.dimensions);
-    const auto basin = waterline ? basins_about(hull, pose, *waterline) : std::nullopt;
-    if (!basin) return equilibrium_draft(body.mesh, pose.orientation, body.mass / density);
+    const auto level = waterline ? WettedSurface(hull, pose).level_of_basins(*waterline) : std::nullopt;
+    if (!level) return equilibrium_draft(body.mesh, pose.orientation, body.mass / density);
+    const BasinQuery basin(hull, pose, *level);
     const FluidState& fluid = world_.fluid().fluid();
     const auto aboard = std::count_if(fluid.position.begin(), fluid.position.end(), [&](const Vec4& position) {
-        return basin->holds(position.head<3>().cast<double>());
+        return basin.holds(position.head<3>().cast<double>());
     });
     const double mass = body.mass + fluid.particle_mass * static_cast<double>(aboard);
     return vessel_draft(hull, pose, *waterline, mass / density);
