@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace flotsam {
 namespace {
@@ -113,6 +114,12 @@ TriangleMesh welded(TriangleMesh mesh, const MeshTopology& topology)
     return mesh;
 }
 
+/// Whether of so much area little has an opposite face, and most no room for a ball either.
+bool is_narrow(double thin, double bare, double area)
+{
+    return thin < 0.2 * area && bare > 0.5 * area;
+}
+
 /// Triangles of the narrow faces that lie between opposite ones.
 std::vector<char> find_rims(const Thinness& surface, const TriangleAdjacency& adjacency, const OffsetSurface& offset)
 {
@@ -153,8 +160,7 @@ std::vector<char> find_rims(const Thinness& surface, const TriangleAdjacency& ad
     std::vector<char> is_rim(count, 0);
     for (std::size_t t = 0; t < count; ++t) {
         const std::size_t face = faces.find(t);
-        const bool narrow = thin[face] < 0.2 * area[face] && bare[face] > 0.5 * area[face];
-        is_rim[t] = narrow && joins_opposites(face) ? 1 : 0;
+        is_rim[t] = is_narrow(thin[face], bare[face], area[face]) && joins_opposites(face) ? 1 : 0;
     }
     return is_rim;
 }
@@ -176,6 +182,51 @@ TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<std::size_t>& t
     return part;
 }
 
+/// Sets of triangles that hang together without the rims; nothing if opposite ones still do.
+std::optional<DisjointSets> split_at(const std::vector<char>& is_rim, const TriangleAdjacency& adjacency,
+                                     const Thinness& thinness)
+{
+    DisjointSets sides(is_rim.size());
+    visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
+        if (is_rim[a] == 0 && is_rim[b] == 0) sides.join(a, b);
+    });
+    double thin = 0.0, same = 0.0;
+    for (const Thinness::Pair& pair : thinness.pairs) {
+        thin += pair.area;
+        if (sides.find(pair.triangle) == sides.find(pair.opposite)) same += pair.area;
+    }
+    return same > kMostSame * thin ? std::nullopt : std::optional<DisjointSets>(std::move(sides));
+}
+
+/// Triangles between opposite ones that are no face of their own: narrow ones that hang together and lie between what
+/// has opposite triangles. (Those at an edge of the outside are narrow as well.)
+std::vector<char> find_rounded_rims(const Thinness& thinness, const TriangleAdjacency& adjacency)
+{
+    const std::size_t count = thinness.area.size();
+    std::vector<char> is_narrow_one(count);
+    for (std::size_t t = 0; t < count; ++t)
+        is_narrow_one[t] = is_narrow(thinness.thin[t], thinness.bare[t], thinness.area[t]) ? 1 : 0;
+    DisjointSets parts(count); // of narrow triangles, and of others
+    visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
+        if (is_narrow_one[a] == is_narrow_one[b]) parts.join(a, b);
+    });
+    std::set<std::pair<std::size_t, std::size_t>> opposites, beside; // parts; a narrow one first
+    for (const Thinness::Pair& pair : thinness.pairs)
+        opposites.emplace(parts.find(pair.triangle), parts.find(pair.opposite));
+    visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
+        if (is_narrow_one[a] == is_narrow_one[b]) return;
+        const std::size_t narrow = is_narrow_one[a] != 0 ? a : b;
+        beside.emplace(parts.find(narrow), parts.find(narrow == a ? b : a));
+    });
+    std::set<std::size_t> rims;
+    for (const auto& [narrow, one] : beside)
+        for (auto at = beside.lower_bound({narrow, 0}); at != beside.end() && at->first == narrow; ++at)
+            if (opposites.count({one, at->second}) != 0) rims.insert(narrow);
+    std::vector<char> is_rim(count);
+    for (std::size_t t = 0; t < count; ++t) is_rim[t] = is_narrow_one[t] != 0 && rims.count(parts.find(t)) != 0 ? 1 : 0;
+    return is_rim;
+}
+
 SheetSides sides_of_shell(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
 {
     const TriangleMesh& mesh = surface.mesh();
@@ -184,24 +235,24 @@ SheetSides sides_of_shell(const SurfaceQuery& surface, const SurfaceSampleSettin
     const Thinness thinness = probe.thinness();
     const TriangleMesh joined_up = welded(mesh, probe.offset().topology());
     const TriangleAdjacency adjacency = triangle_adjacency(joined_up);
-    const std::vector<char> is_rim = find_rims(thinness, adjacency, probe.offset());
-    DisjointSets sides(mesh.triangles.size());
-    visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
-        if (is_rim[a] == 0 && is_rim[b] == 0) sides.join(a, b);
-    });
-    double thin = 0.0, same = 0.0, distance = 0.0;
-    for (const Thinness::Pair& pair : thinness.pairs) {
-        thin += pair.area;
-        distance += pair.area * pair.distance;
-        if (sides.find(pair.triangle) == sides.find(pair.opposite)) same += pair.area;
+    std::vector<char> is_rim = find_rims(thinness, adjacency, probe.offset());
+    std::optional<DisjointSets> parts = split_at(is_rim, adjacency, thinness);
+    if (!parts) {
+        is_rim = find_rounded_rims(thinness, adjacency);
+        parts = split_at(is_rim, adjacency, thinness);
     }
-    if (same > kMostSame * thin) return {};
+    if (!parts) return {};
     std::map<std::size_t, std::vector<std::size_t>> triangles;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        if (is_rim[t] == 0) triangles[sides.find(t)].push_back(t);
+        if (is_rim[t] == 0) triangles[parts->find(t)].push_back(t);
     SheetSides result;
     for (const auto& [first, part] : triangles) result.sides.push_back(part_of(joined_up, part));
-    result.thickness = distance / thin;
+    double thin = 0.0;
+    for (const Thinness::Pair& pair : thinness.pairs) {
+        thin += pair.area;
+        result.thickness += pair.area * pair.distance;
+    }
+    result.thickness /= thin;
     return result;
 }
 

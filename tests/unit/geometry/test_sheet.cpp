@@ -44,7 +44,51 @@ TriangleMesh pipe(double outer, double inner, double half, int corners)
     return mesh;
 }
 
+/// A cup about z, its wall and its rim rounded by half its thickness, the bottom flat.
+TriangleMesh cup(double radius, double height, double thick, int corners)
+{
+    std::vector<Eigen::Vector2d> profile = {{radius, 0.0}}; // radius and height, from the outer edge of the bottom
+    for (int k = 1; k <= 20; ++k) profile.emplace_back(radius, height * k / 20.0);
+    for (int k = 1; k < 12; ++k) {
+        const double angle = std::numbers::pi * k / 12.0;
+        profile.emplace_back(radius - 0.5 * thick + 0.5 * thick * std::cos(angle),
+                             height + 0.5 * thick * std::sin(angle));
+    }
+    for (int k = 20; k >= 0; --k) profile.emplace_back(radius - thick, thick + (height - thick) * k / 20.0);
+    TriangleMesh mesh;
+    const int rings = static_cast<int>(profile.size());
+    for (const auto& p : profile)
+        for (int k = 0; k < corners; ++k) {
+            const double angle = 2.0 * std::numbers::pi * k / corners;
+            mesh.vertices.emplace_back(p.x() * std::cos(angle), p.x() * std::sin(angle), p.y());
+        }
+    const int below = static_cast<int>(mesh.vertices.size()), above = below + 1;
+    mesh.vertices.emplace_back(0, 0, 0);
+    mesh.vertices.emplace_back(0, 0, thick);
+    for (int k = 0; k < corners; ++k) {
+        const int n = (k + 1) % corners;
+        for (int r = 0; r + 1 < rings; ++r) {
+            const int a = r * corners, b = a + corners;
+            mesh.triangles.push_back({a + k, a + n, b + n});
+            mesh.triangles.push_back({a + k, b + n, b + k});
+        }
+        mesh.triangles.push_back({below, n, k});
+        mesh.triangles.push_back({above, (rings - 1) * corners + k, (rings - 1) * corners + n});
+    }
+    return mesh;
+}
+
 } // namespace
+
+TEST_CASE("a rounded rim parts the sides, too", "[geometry][sheet]")
+{
+    const double thick = GENERATE(0.3, 0.8) * kD;
+    const TriangleMesh mesh = cup(0.5, 1.0, thick, 60);
+    REQUIRE(meshes::volume(mesh) > 0.0);
+    const SheetSides sides = sides_of(mesh);
+    CHECK(sides.sides.size() == 2);
+    CHECK(sides.thickness == Approx(thick).epsilon(0.05));
+}
 
 TEST_CASE("shells and plates have sides, solids have none", "[geometry][sheet]")
 {

@@ -233,6 +233,29 @@ TEST_CASE("a boat of sheet metal floats dry at the draft of its mass", "[world][
     CHECK(highest_density(world) < 1050.0);
 }
 
+TEST_CASE("with sheets, too, sums do not depend on the number of threads, and momentum is kept", "[world][sheet]")
+{
+    std::uint64_t hash = 0;
+    for (const int threads : {1, 2, 3}) {
+        FluidWorldSettings settings = settings_of(3);
+        settings.threads = threads;
+        FluidWorld world(settings);
+        world.add_box_wall({Vec3d(0, 0, 0), Vec3d(0.4, 0.4, 0.5)}, {"+z"});
+        world.add_block({Vec3d(0, 0, 0), Vec3d(0.4, 0.4, 0.2)});
+        const Vec3d half(0.1, 0.1, 0.003);
+        world.add_body(tessellate(BoxShape{2.0 * half}, kD));
+        FreeBodies bodies({free_box(2.0 * half, 3000.0, Vec3d(0.2, 0.2, 0.1))}, Vec3d(0, 0, -9.81));
+        Vec3d to_body = Vec3d::Zero();
+        for (int k = 0; k < 20; ++k) to_body += world.step(0.002, bodies).body_impulse;
+        const FreeBody& plate = bodies.bodies[0];
+        const Vec3d gained = plate.momentum - plate.mass * Vec3d(0, 0, -9.81 * 20 * 0.002);
+        CHECK(to_body.z() > 0.05 * plate.mass * 9.81 * 20 * 0.002); // the water held it up
+        CHECK((gained - to_body).norm() < 1e-9 * to_body.norm());
+        if (threads == 1) hash = world.state_hash();
+        CHECK(world.state_hash() == hash);
+    }
+}
+
 TEST_CASE("water around a vessel does not fill her, water that is put into her stays", "[world][vessel]")
 {
     // 10 x 10 x 8 spacings of a vessel; 4 spacings of draft, or wholly under water, or water put into her.
