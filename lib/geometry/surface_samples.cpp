@@ -49,7 +49,7 @@ SurfaceSamples samples_at(const std::vector<std::vector<OffsetPoint>>& sides, bo
             samples.depth.push_back(point.depth);
             thin += point.thin ? 1 : 0;
             if (!is_sheet) continue;
-            samples.normal.push_back(-point.direction);
+            samples.normal.push_back(point.thin ? Vec3d(Vec3d::Zero()) : Vec3d(-point.direction));
             samples.side.push_back(static_cast<std::int32_t>(side));
         }
     }

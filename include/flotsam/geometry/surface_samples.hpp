@@ -27,7 +27,8 @@ struct SurfaceSamples {
     std::vector<Vec3d> positions; ///< [m], mesh frame
     std::vector<double> depth;    ///< of each below the surface [m]; < inset where the solid is thin
     double thin_fraction = 0.0;   ///< of the samples that sit in the middle of a part thinner than 2 insets
-    /// Of sheets, else empty: unit, from each sample to the face that it stands for, whose water alone may feel it.
+    /// Of sheets, else empty: unit, from each sample to the face that it stands for, whose water alone may feel it; 0 in
+    /// a thin edge, where a sample stands for both faces of its side.
     std::vector<Vec3d> normal;
     std::vector<std::int32_t> side; ///< of sheets, else empty: the face's number
 };
