@@ -120,49 +120,59 @@ bool is_narrow(double thin, double bare, double area)
     return thin < 0.2 * area && bare > 0.5 * area;
 }
 
-/// Triangles of the narrow faces that lie between opposite ones.
-std::vector<char> find_rims(const Thinness& surface, const TriangleAdjacency& adjacency, const OffsetSurface& offset)
+/// Triangles of the narrow groups that lie between opposite groups.
+std::vector<char> find_rims(DisjointSets& groups, const Thinness& thinness, const TriangleAdjacency& adjacency)
 {
-    const std::size_t count = surface.area.size();
-    DisjointSets faces(count);
+    const std::size_t count = thinness.area.size();
+    std::vector<double> area(count, 0.0), thin(count, 0.0), bare(count, 0.0); // of groups
+    for (std::size_t t = 0; t < count; ++t) {
+        const std::size_t group = groups.find(t);
+        area[group] += thinness.area[t];
+        thin[group] += thinness.thin[t];
+        bare[group] += thinness.bare[t];
+    }
+    std::set<std::pair<std::size_t, std::size_t>> opposites, beside; // groups
+    for (const Thinness::Pair& pair : thinness.pairs)
+        opposites.emplace(groups.find(pair.triangle), groups.find(pair.opposite));
+    visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
+        a = groups.find(a);
+        b = groups.find(b);
+        if (a == b) return;
+        beside.emplace(a, b);
+        beside.emplace(b, a);
+    });
+    std::set<std::size_t> rims;
+    for (const auto& [group, one] : beside)
+        for (auto at = beside.lower_bound({group, 0}); at != beside.end() && at->first == group; ++at)
+            if (opposites.count({one, at->second}) != 0) rims.insert(group);
+    std::vector<char> is_rim(count);
+    for (std::size_t t = 0; t < count; ++t) {
+        const std::size_t group = groups.find(t);
+        is_rim[t] = is_narrow(thin[group], bare[group], area[group]) && rims.count(group) != 0 ? 1 : 0;
+    }
+    return is_rim;
+}
+
+/// Neighbours that bend little.
+DisjointSets faces_of(const TriangleAdjacency& adjacency, const OffsetSurface& offset)
+{
+    DisjointSets faces(adjacency.neighbours.size());
     visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
         if (offset.inward(a).dot(offset.inward(b)) > kSameFace) faces.join(a, b);
     });
-    std::vector<double> area(count, 0.0), thin(count, 0.0), bare(count, 0.0);
-    for (std::size_t t = 0; t < count; ++t) {
-        const std::size_t face = faces.find(t);
-        area[face] += surface.area[t];
-        thin[face] += surface.thin[t];
-        bare[face] += surface.bare[t];
-    }
-    std::map<std::size_t, std::vector<std::size_t>> opposites, beside; // of each face, the faces
-    for (const Thinness::Pair& pair : surface.pairs)
-        opposites[faces.find(pair.triangle)].push_back(faces.find(pair.opposite));
+    return faces;
+}
+
+/// Narrow triangles that hang together, and others: a rounded rim is no face of its own. (Triangles at an edge of the
+/// outside are narrow as well, but not between opposite ones.)
+DisjointSets narrow_parts(const TriangleAdjacency& adjacency, const Thinness& thinness)
+{
+    DisjointSets parts(adjacency.neighbours.size());
+    const auto narrow = [&](std::size_t t) { return is_narrow(thinness.thin[t], thinness.bare[t], thinness.area[t]); };
     visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
-        beside[faces.find(a)].push_back(faces.find(b));
-        beside[faces.find(b)].push_back(faces.find(a));
+        if (narrow(a) == narrow(b)) parts.join(a, b);
     });
-    for (auto* lists : {&opposites, &beside}) {
-        for (auto& [face, list] : *lists) {
-            std::sort(list.begin(), list.end());
-            list.erase(std::unique(list.begin(), list.end()), list.end());
-        }
-    }
-    const auto joins_opposites = [&](std::size_t face) {
-        const std::vector<std::size_t>& around = beside[face];
-        return std::any_of(around.begin(), around.end(), [&](std::size_t other) {
-            const std::vector<std::size_t>& across = opposites[other];
-            return other != face && std::any_of(across.begin(), across.end(), [&](std::size_t third) {
-                       return third != face && std::binary_search(around.begin(), around.end(), third);
-                   });
-        });
-    };
-    std::vector<char> is_rim(count, 0);
-    for (std::size_t t = 0; t < count; ++t) {
-        const std::size_t face = faces.find(t);
-        is_rim[t] = is_narrow(thin[face], bare[face], area[face]) && joins_opposites(face) ? 1 : 0;
-    }
-    return is_rim;
+    return parts;
 }
 
 TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<std::size_t>& triangles)
@@ -198,35 +208,6 @@ std::optional<DisjointSets> split_at(const std::vector<char>& is_rim, const Tria
     return same > kMostSame * thin ? std::nullopt : std::optional<DisjointSets>(std::move(sides));
 }
 
-/// Triangles between opposite ones that are no face of their own: narrow ones that hang together and lie between what
-/// has opposite triangles. (Those at an edge of the outside are narrow as well.)
-std::vector<char> find_rounded_rims(const Thinness& thinness, const TriangleAdjacency& adjacency)
-{
-    const std::size_t count = thinness.area.size();
-    std::vector<char> is_narrow_one(count);
-    for (std::size_t t = 0; t < count; ++t)
-        is_narrow_one[t] = is_narrow(thinness.thin[t], thinness.bare[t], thinness.area[t]) ? 1 : 0;
-    DisjointSets parts(count); // of narrow triangles, and of others
-    visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
-        if (is_narrow_one[a] == is_narrow_one[b]) parts.join(a, b);
-    });
-    std::set<std::pair<std::size_t, std::size_t>> opposites, beside; // parts; a narrow one first
-    for (const Thinness::Pair& pair : thinness.pairs)
-        opposites.emplace(parts.find(pair.triangle), parts.find(pair.opposite));
-    visit_neighbours(adjacency, [&](std::size_t a, std::size_t b) {
-        if (is_narrow_one[a] == is_narrow_one[b]) return;
-        const std::size_t narrow = is_narrow_one[a] != 0 ? a : b;
-        beside.emplace(parts.find(narrow), parts.find(narrow == a ? b : a));
-    });
-    std::set<std::size_t> rims;
-    for (const auto& [narrow, one] : beside)
-        for (auto at = beside.lower_bound({narrow, 0}); at != beside.end() && at->first == narrow; ++at)
-            if (opposites.count({one, at->second}) != 0) rims.insert(narrow);
-    std::vector<char> is_rim(count);
-    for (std::size_t t = 0; t < count; ++t) is_rim[t] = is_narrow_one[t] != 0 && rims.count(parts.find(t)) != 0 ? 1 : 0;
-    return is_rim;
-}
-
 SheetSides sides_of_shell(const SurfaceQuery& surface, const SurfaceSampleSettings& settings)
 {
     const TriangleMesh& mesh = surface.mesh();
@@ -235,10 +216,12 @@ SheetSides sides_of_shell(const SurfaceQuery& surface, const SurfaceSampleSettin
     const Thinness thinness = probe.thinness();
     const TriangleMesh joined_up = welded(mesh, probe.offset().topology());
     const TriangleAdjacency adjacency = triangle_adjacency(joined_up);
-    std::vector<char> is_rim = find_rims(thinness, adjacency, probe.offset());
+    DisjointSets groups = faces_of(adjacency, probe.offset());
+    std::vector<char> is_rim = find_rims(groups, thinness, adjacency);
     std::optional<DisjointSets> parts = split_at(is_rim, adjacency, thinness);
     if (!parts) {
-        is_rim = find_rounded_rims(thinness, adjacency);
+        groups = narrow_parts(adjacency, thinness);
+        is_rim = find_rims(groups, thinness, adjacency);
         parts = split_at(is_rim, adjacency, thinness);
     }
     if (!parts) return {};

@@ -1,41 +1,13 @@
 #include "geometry/submerged_moments.hpp"
 
 #include "flotsam/core/contracts.hpp"
+#include "geometry/wetted_triangle.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace flotsam {
 namespace {
-
-/// What is left of a triangle below z = 0: up to four corners, in the triangle's order.
-struct Wetted {
-    std::array<Vec3d, 4> corners;
-    std::size_t count = 0;
-    void add(const Vec3d& corner) { corners[count++] = corner; }
-};
-
-/// Where an edge meets z = 0; always reckoned from its lower end, so that both its triangles find the same point.
-Vec3d crossing(const Vec3d& a, const Vec3d& b)
-{
-    const Vec3d& low = a.z() < b.z() ? a : b;
-    const Vec3d& high = a.z() < b.z() ? b : a;
-    Vec3d point = low + (high - low) * (low.z() / (low.z() - high.z()));
-    point.z() = 0.0;
-    return point;
-}
-
-Wetted clip(const std::array<Vec3d, 3>& triangle)
-{
-    Wetted wetted;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3d& a = triangle[k];
-        const Vec3d& b = triangle[(k + 1) % 3];
-        if (a.z() <= 0.0) wetted.add(a);
-        if ((a.z() < 0.0 && b.z() > 0.0) || (a.z() > 0.0 && b.z() < 0.0)) wetted.add(crossing(a, b));
-    }
-    return wetted;
-}
 
 /// The waterplane closes the wetted surface, and f(x, y) e_z has no divergence: the integral of f over the waterplane
 /// is minus that of f n_z over the wetted triangles, whose projections n_z dA onto the plane are integrated here.
@@ -69,7 +41,7 @@ SubmergedMoments submerged_moments(const TriangleMesh& closed, const Pose& pose,
         for (int k = 0; k < 3; ++k) triangle[static_cast<std::size_t>(k)] = shift + rotation * closed.corner(t, k);
         // A face that lies in the plane is no part of what is below it.
         if (!(triangle[0].z() < 0.0 || triangle[1].z() < 0.0 || triangle[2].z() < 0.0)) continue;
-        const Wetted wetted = clip(triangle);
+        const WettedTriangle wetted = wetted_part(triangle);
         for (std::size_t k = 2; k < wetted.count; ++k)
             add_wetted(sum, wetted.corners[0], wetted.corners[k - 1], wetted.corners[k]);
     }

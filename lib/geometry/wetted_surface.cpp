@@ -3,6 +3,7 @@
 #include "flotsam/core/contracts.hpp"
 #include "geometry/disjoint_sets.hpp"
 #include "geometry/mesh_topology.hpp"
+#include "geometry/wetted_triangle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,20 +15,14 @@ constexpr std::size_t kDry = static_cast<std::size_t>(-1);
 constexpr int kLevelsTried = 16;
 
 /// Volume between a triangle's part below the water and the water plane, positive where the triangle looks down [m^3].
-double column(const std::array<Vec3d, 3>& corners, double water_level)
+double column(std::array<Vec3d, 3> corners, double water_level)
 {
-    std::array<Vec3d, 4> wet; // of three corners at most two are below with two crossings, or three
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3d &a = corners[k], &b = corners[(k + 1) % 3];
-        const double depth_a = water_level - a.z(), depth_b = water_level - b.z();
-        if (depth_a > 0.0) wet[count++] = a;
-        if ((depth_a > 0.0) != (depth_b > 0.0)) wet[count++] = a + depth_a / (depth_a - depth_b) * (b - a);
-    }
+    for (Vec3d& corner : corners) corner.z() -= water_level;
+    const WettedTriangle wet = wetted_part(corners);
     double sum = 0.0;
-    for (std::size_t k = 2; k < count; ++k) {
-        const Vec3d area = 0.5 * (wet[k - 1] - wet[0]).cross(wet[k] - wet[0]);
-        sum -= area.z() * (water_level - (wet[0].z() + wet[k - 1].z() + wet[k].z()) / 3.0);
+    for (std::size_t k = 2; k < wet.count; ++k) {
+        const Vec3d &a = wet.corners[0], &b = wet.corners[k - 1], &c = wet.corners[k];
+        sum += 0.5 * (b - a).cross(c - a).z() * (a.z() + b.z() + c.z()) / 3.0;
     }
     return sum;
 }

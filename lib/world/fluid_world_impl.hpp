@@ -199,7 +199,9 @@ struct FluidWorld::Impl {
     [[nodiscard]] SurfaceSampleSettings sample_settings(SurfaceSampleSettings::Solid solid) const;
     void add_samples(std::size_t owner, const SurfaceSamples& samples, const SurfaceSamples& around);
     [[nodiscard]] std::vector<double> volumes_of(const SurfaceSamples& samples, const SurfaceSamples& around) const;
-    [[nodiscard]] std::unique_ptr<Sheet> sheet_of(const SurfaceQuery& query, SurfaceSampleSettings::Solid solid) const;
+    [[nodiscard]] SurfaceSampleSettings wall_sampling(const Wall& wall) const;
+    [[nodiscard]] std::unique_ptr<Sheet> sheet_of(const SurfaceQuery& query, const SurfaceSampleSettings& sampling,
+                                                  const SurfaceSamples& samples) const;
     void note_thin(const std::string& name, double fraction);
 
     // settle.cpp

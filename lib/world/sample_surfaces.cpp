@@ -78,10 +78,12 @@ std::vector<double> FluidWorld::Impl::volumes_of(const SurfaceSamples& samples, 
     return volumes;
 }
 
-std::unique_ptr<Sheet> FluidWorld::Impl::sheet_of(const SurfaceQuery& query, SurfaceSampleSettings::Solid solid) const
+/// Of what was sampled as one; null: it was not.
+std::unique_ptr<Sheet> FluidWorld::Impl::sheet_of(const SurfaceQuery& query, const SurfaceSampleSettings& sampling,
+                                                  const SurfaceSamples& samples) const
 {
-    const SheetSides sides = sheet_sides(query, sample_settings(solid));
-    return sides.sides.empty() ? nullptr : std::make_unique<Sheet>(sides, spacing());
+    if (samples.side.empty()) return nullptr;
+    return std::make_unique<Sheet>(sheet_sides(query, sampling), spacing());
 }
 
 void FluidWorld::Impl::note_thin(const std::string& name, double fraction)
@@ -96,9 +98,9 @@ void FluidWorld::Impl::note_thin(const std::string& name, double fraction)
 void FluidWorld::Impl::sample_body(std::size_t k)
 {
     if (!bodies[k].query) return; // removed
-    bodies[k].sheet = sheet_of(*bodies[k].query, SurfaceSampleSettings::Solid::inside);
-    const SurfaceSamples samples =
-        sample_surface(*bodies[k].query, sample_settings(SurfaceSampleSettings::Solid::inside), workers);
+    const SurfaceSampleSettings sampling = sample_settings(SurfaceSampleSettings::Solid::inside);
+    const SurfaceSamples samples = sample_surface(*bodies[k].query, sampling, workers);
+    bodies[k].sheet = sheet_of(*bodies[k].query, sampling, samples);
     add_samples(walls.size() + k, samples, {});
     note_thin(bodies[k].name, samples.thin_fraction);
 }
@@ -109,23 +111,27 @@ void FluidWorld::Impl::sample_surfaces()
     for (std::size_t k = 0; k < bodies.size(); ++k) sample_body(k);
 }
 
+SurfaceSampleSettings FluidWorld::Impl::wall_sampling(const Wall& wall) const
+{
+    using Solid = SurfaceSampleSettings::Solid;
+    return sample_settings(wall.side == WallSide::inside    ? Solid::outside
+                           : wall.side == WallSide::outside ? Solid::inside
+                                                            : Solid::both);
+}
+
 /// A wall gets samples where water comes near: in parts of 32 to 64 spacings, since sampling costs the more the larger
 /// the surface, and in memory as well.
 void FluidWorld::Impl::prepare_wall_samples(std::size_t k)
 {
     constexpr double kPart = 32.0; // spacings
-    using Solid = SurfaceSampleSettings::Solid;
     Wall& wall = walls[k];
-    const Solid solid = wall.side == WallSide::inside    ? Solid::outside
-                        : wall.side == WallSide::outside ? Solid::inside
-                                                         : Solid::both;
-    const SurfaceSampleSettings sampling = sample_settings(solid);
-    wall.sheet = sheet_of(*wall.query, solid);
+    const SurfaceSampleSettings sampling = wall_sampling(wall);
     if (settings.dimensions == 3) {
         wall.sampler = std::make_unique<SurfaceSampler>(*wall.query, sampling, kPart * spacing());
         return;
     }
     const SurfaceSamples samples = sample_surface(*wall.query, sampling, workers);
+    wall.sheet = sheet_of(*wall.query, sampling, samples);
     add_samples(k, samples, {});
     note_thin(wall.name, samples.thin_fraction);
 }
@@ -173,6 +179,7 @@ void FluidWorld::Impl::sample_walls_in_reach()
                 continue;
             }
             const SurfaceSampler::Part found = wall.sampler->sample(part, workers);
+            if (!wall.sheet) wall.sheet = sheet_of(*wall.query, wall_sampling(wall), found.samples);
             add_samples(k, found.samples, found.around);
             if (!wall.is_noted_thin) note_thin(wall.name, found.samples.thin_fraction);
             wall.is_noted_thin = wall.is_noted_thin || found.samples.thin_fraction > 0.0;
