@@ -40,6 +40,13 @@
 //   too: a ball of 10 spacings (0.5) falls short by 4 % instead of 12, but a still tank of 15 layers moves at 2 % of
 //   sqrt(g depth) after 8 s instead of 0.15. Of it the part along the strain rate alone: 0.38 %, and half of the gain.
 //   Carrying <T> on to them from inside along the strain rate: no gain. With a looser bound than 0.03 p it oscillates.
+// - The same only where water slides along samples (by 0.03 to 0.1 sqrt(p / rho + 3 g d), nothing below), and averaged
+//   over four steps: still water stays still (0.167 % of sqrt(g depth) rms after 10 s, 0.162 without), a ball falls
+//   short by 6 % (0.5) and 1 % (0.8), a disc by 1 to 6 % but 0.8 goes ahead by 4 to 8 %, a square gains nothing. Of it
+//   the part along the strain rate: ball -6, -1 %, disc no gain, square -10, -8, -9 % (0.1, 0.5, 0.8; -16, -14, -9
+//   before), but a square of 0.001 is thrown about by what its samples get in one step. Without passing it on to the
+//   samples: ball -9 %, disc and square no gain. With twice the bound a disc of 0.8 swims by itself (+34 %). Not taken.
+// - A square of 20 spacings in half its edge falls short by 10 % (0.5), one of 10 by 14 %, one of 6 by 20 %.
 #include "flotsam/geometry/shapes.hpp"
 #include "flotsam/world/fluid_world.hpp"
 
