@@ -108,7 +108,8 @@ struct FluidWorld::Impl {
     CellGrid grid;
     CellLists fluid_cells, boundary_cells;
     NeighbourSearch search;
-    Pairs fluid_pairs, boundary_pairs;
+    SelfPairs fluid_pairs;
+    Pairs boundary_pairs;
     SheetScreen screen;
     std::size_t paired_samples = 0; ///< boundary samples that there were when boundary_pairs was found
     ContactBuilder contact_builder;
@@ -129,13 +130,14 @@ struct FluidWorld::Impl {
     std::vector<Wrench> total;   ///< of each owner over the last step [N s]
     std::vector<Wrench> offered; ///< total and pushed, while joints and contacts are asked about them [N s]
     std::vector<Vec4> predicted;
-    std::vector<Vec4> shift, new_velocity;    ///< scratch of sorting and of the forces until they are written
-    std::vector<Vec4> new_position;           ///< between steps: where the particles were when the pairs were found
+    std::vector<Vec4> shift;
+    /// Scratch of sorting, forces and the pressure system until they are written; between steps new_position has where
+    /// the particles were when the pairs were found.
+    std::vector<Vec4> new_position, new_velocity;
     PressureSystem::Scratch pressure_scratch; ///< the forces' before; change: by pressure [m/s]
-    std::vector<Scalar> multiplier, source, diagonal, fluid_diagonal;
+    std::vector<Scalar> multiplier, source;   ///< source: scratch of sorting before
+    std::vector<Scalar> fluid_diagonal, coupled_diagonal;
     std::vector<Eigen::Matrix<double, 6, 6>> mobility;
-    std::vector<Scalar> sort_scalar;
-    std::vector<std::uint32_t> sort_id;
     std::vector<double> sums;
     std::vector<MaxOf> max_scratch;
     std::vector<char> reached_parts; ///< of a wall

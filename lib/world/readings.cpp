@@ -45,9 +45,9 @@ double FluidWorld::Impl::gauge_pressure(std::size_t i) const
     const double g = settings.gravity.norm();
     double sum = 0.0;
     for (std::uint32_t k = fluid_pairs.start[i]; k < fluid_pairs.start[i + 1]; ++k) {
-        const std::uint32_t j = fluid_pairs.index[k];
+        const std::uint32_t j = fluid_pairs.neighbour(i, k);
         const Vec3d x = (new_position[i] - new_position[j]).head<3>().cast<double>();
-        const Vec3d gradient = static_cast<double>(fluid_pairs.slope[k]) * x;
+        const Vec3d gradient = static_cast<double>(fluid_pairs.slope(k)) * x;
         const double push = g > 0.0 ? -x.dot(settings.gravity) * gradient.dot(settings.gravity) / (g * g)
                                     : -x.dot(gradient) / settings.dimensions;
         sum += (share(i) + share(j)) * push;
@@ -62,7 +62,7 @@ FluidWorld::Impl::Readable FluidWorld::Impl::readable(std::size_t i) const
     if (touches(i)) return Readable::any;
     const Scalar next_sq = static_cast<Scalar>(1.25 * 1.25 * spacing() * spacing());
     for (std::uint32_t k = fluid_pairs.start[i]; k < fluid_pairs.start[i + 1]; ++k) {
-        const std::uint32_t j = fluid_pairs.index[k];
+        const std::uint32_t j = fluid_pairs.neighbour(i, k);
         if (touches(j) && (fluid.position[i] - fluid.position[j]).squaredNorm() < next_sq) return Readable::free;
     }
     return Readable::bulk;

@@ -88,9 +88,9 @@ double FluidWorld::Impl::settle_round(double dt, Bodies& held)
 bool FluidWorld::Impl::is_carried(std::size_t i) const
 {
     if (fluid.pressure[i] > 0) return true;
-    const auto begin = fluid_pairs.index.begin();
-    return std::any_of(begin + fluid_pairs.start[i], begin + fluid_pairs.start[i + 1],
-                       [&](std::uint32_t j) { return fluid.pressure[j] > 0; });
+    for (std::uint32_t k = fluid_pairs.start[i]; k < fluid_pairs.start[i + 1]; ++k)
+        if (fluid.pressure[fluid_pairs.neighbour(i, k)] > 0) return true;
+    return false;
 }
 
 } // namespace flotsam

@@ -63,7 +63,8 @@ void SheetScreen::find_near(std::int32_t owner, std::size_t particles, const Bou
 }
 
 void SheetScreen::hide(const Placed& placed, const Kernel& kernel, std::span<const Vec4> position,
-                       const BoundaryState& boundary, const Workers& workers, Pairs& fluid_pairs, Pairs& boundary_pairs)
+                       const BoundaryState& boundary, const Workers& workers, SelfPairs& fluid_pairs,
+                       Pairs& boundary_pairs)
 {
     const auto owner = static_cast<std::int32_t>(placed.owner);
     find_near(owner, position.size(), boundary, workers, boundary_pairs);
@@ -83,19 +84,18 @@ void SheetScreen::hide(const Placed& placed, const Kernel& kernel, std::span<con
         const double in_front = on_one_side(view, sample, slack) ? 1.0 - view.beyond_rim : 0.0;
         return in_front + view.beyond_rim * placed.rim_weight;
     };
-    const auto keep = [&](Pairs& pairs, std::size_t i, std::uint32_t k, double share, const Vec4& other,
-                          Scalar weight) {
+    const auto keep = [&](auto& pairs, std::size_t i, std::uint32_t k, double share, const Vec4& other, Scalar weight) {
         if (share == 1.0) return;
-        const Scalar part = static_cast<Scalar>(share), distance = (position[i] - other).head<3>().norm();
-        pairs.kernel_sum[i] -= (Scalar(1) - part) * weight * kernel.value(distance);
-        pairs.slope[k] *= part;
+        const Scalar distance = (position[i] - other).head<3>().norm();
+        pairs.kernel_sum[i] -= static_cast<Scalar>(1.0 - share) * weight * kernel.value(distance);
+        pairs.keep(k, share);
     };
     workers.for_each(fluid_.points.size(), [&](std::size_t at) {
         const std::size_t i = fluid_.points[at];
         const SheetView& view = fluid_.views[at];
         if (!view.is_near()) return;
         for (std::uint32_t k = fluid_pairs.start[i]; k < fluid_pairs.start[i + 1]; ++k) {
-            const std::uint32_t j = fluid_pairs.index[k];
+            const std::uint32_t j = fluid_pairs.neighbour(i, k);
             const SheetView* other = fluid_.view_of(j);
             if (other != nullptr && other->is_near()) keep(fluid_pairs, i, k, seen(view, *other), position[j], 1);
         }

@@ -26,7 +26,7 @@ class SheetScreen {
     /// both. Symmetric in pairs of particles. Nothing happens if no sample of the sheet is in the pairs.
     /// **Guarantees:** the same for any number of workers.
     void hide(const Placed& placed, const Kernel& kernel, std::span<const Vec4> position, const BoundaryState& boundary,
-              const Workers& workers, Pairs& fluid_pairs, Pairs& boundary_pairs);
+              const Workers& workers, SelfPairs& fluid_pairs, Pairs& boundary_pairs);
 
   private:
     /// Points of one kind near the sheet.

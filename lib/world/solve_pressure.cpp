@@ -58,7 +58,8 @@ double FluidWorld::Impl::mean_length(std::span<const Vec4> vectors)
 /// The system of the pairs and contacts as they are, with fluid_diagonal.
 PressureSystem FluidWorld::Impl::pressure_system()
 {
-    const PressureSystem system(fluid_pairs, fluid.position, contacts, fluid.particle_mass, workers, pressure_scratch);
+    const PressureSystem system(fluid_pairs, fluid.position, contacts, fluid.particle_mass, workers, pressure_scratch,
+                                {&new_position, &new_velocity});
     fluid_diagonal.resize(fluid.size());
     system.fluid_diagonal(fluid_diagonal);
     return system;
@@ -206,12 +207,14 @@ void FluidWorld::Impl::solve_velocities(const PressureSystem& system, double dt,
         const Scalar error = fluid.density[i] - static_cast<Scalar>(rho0);
         source[i] += inv_dt * (error > 0 ? share * std::min(most_error, error) : error);
     });
-    diagonal.assign(fluid_diagonal.begin(), fluid_diagonal.end());
+    std::span<const Scalar> diagonal = fluid_diagonal;
     const bool preconditions = pressure.solver != PressureSettings::Solver::iisph;
     if (is_strong()) {
         build_mobility(port);
         if (preconditions) preconditioner.build(system, mobility, fluid_diagonal);
-        system.add_response_diagonal(mobility, diagonal);
+        coupled_diagonal.assign(fluid_diagonal.begin(), fluid_diagonal.end());
+        system.add_response_diagonal(mobility, coupled_diagonal);
+        diagonal = coupled_diagonal;
     }
     const auto answer_impulses = [&](std::span<const Wrench> impulses, std::span<Twist> answers) {
         respond(port, impulses, answers);

@@ -112,7 +112,7 @@ void FluidWorld::Impl::find_neighbours()
     boundary_cells.build(grid, boundary.position, workers);
     paired_samples = boundary.size();
     kernel.visit([&](const auto& spline) {
-        search.find(spline, grid, fluid_cells, fluid.position, true, {}, workers, fluid_pairs);
+        search.find(spline, grid, fluid_cells, fluid.position, workers, fluid_pairs);
         search.find(spline, grid, boundary_cells, fluid.position, false, boundary.volume, workers, boundary_pairs);
     });
     hide_behind_sheets();
@@ -136,15 +136,15 @@ void FluidWorld::Impl::sort_particles()
     const std::span<const std::uint32_t> order = fluid_cells.order;
     reorder(fluid.position, new_velocity, order, workers);
     reorder(fluid.velocity, new_velocity, order, workers);
-    reorder(fluid.pressure, sort_scalar, order, workers);
-    reorder(fluid.id, sort_id, order, workers);
+    reorder(fluid.pressure, source, order, workers);
+    reorder(fluid.id, fluid_cells.cell, order, workers);
     for (std::size_t i = 0; i < fluid.size(); ++i) fluid_cells.order[i] = static_cast<std::uint32_t>(i);
 }
 
 void FluidWorld::Impl::measure_density(StepReport& report)
 {
-    compute_density(fluid_pairs, boundary_pairs, kernel.value(0), fluid.particle_mass, settings.rest_density, workers,
-                    fluid.density);
+    compute_density(fluid_pairs.kernel_sum, boundary_pairs.kernel_sum, kernel.value(0), fluid.particle_mass,
+                    settings.rest_density, workers, fluid.density);
     contact_builder.build(boundary_pairs, fluid.position, boundary, centers, settings.rest_density, workers, contacts);
     const double rho0 = settings.rest_density;
     const auto compression = [&](std::size_t i) {
@@ -167,7 +167,7 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
     workers.for_each(fluid.size(), [&](std::size_t i) { predicted[i] = fluid.velocity[i] + gravity_step; });
     report.gravity_impulse = settings.gravity * (dt * fluid.particle_mass * static_cast<double>(fluid.size()));
     total.assign(owners(), Wrench{});
-    const ForceScratch scratch{&pressure_scratch.change, &shift, &new_velocity, &pressure_scratch.unknowns};
+    const ForceScratch scratch{&pressure_scratch.change, &shift, &new_velocity, &new_position};
     if (settings.kinematic_viscosity > 0.0 || settings.dissipation > 0.0) {
         const ViscositySettings viscous{settings.kinematic_viscosity, settings.dissipation, spacing(),
                                         settings.rest_density, settings.dimensions};

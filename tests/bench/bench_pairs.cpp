@@ -19,7 +19,7 @@ struct Water {
     std::vector<Vec4> position, velocity, strain, at;
     CellGrid grid;
     CellLists lists;
-    Pairs pairs;
+    SelfPairs pairs;
     Kernel kernel;
     NeighbourSearch search;
 
@@ -50,7 +50,7 @@ struct Water {
     }
     void find()
     {
-        kernel.visit([&](const auto& spline) { search.find(spline, grid, lists, position, true, {}, workers, pairs); });
+        kernel.visit([&](const auto& spline) { search.find(spline, grid, lists, position, workers, pairs); });
     }
 };
 

@@ -83,10 +83,9 @@ double mean_neighbours(const FluidWorld& world, const Kernel& kernel)
         CellGrid::around(fluid.position, {}, static_cast<double>(kernel.support()), 16 * fluid.size());
     CellLists lists;
     lists.build(grid, fluid.position, workers);
-    Pairs pairs;
+    SelfPairs pairs;
     NeighbourSearch search;
-    kernel.visit(
-        [&](const auto& spline) { search.find(spline, grid, lists, fluid.position, true, {}, workers, pairs); });
+    kernel.visit([&](const auto& spline) { search.find(spline, grid, lists, fluid.position, workers, pairs); });
     return static_cast<double>(pairs.size()) / static_cast<double>(fluid.size());
 }
 

@@ -45,7 +45,7 @@ struct CellLists {
 
     std::vector<std::uint32_t> start;
     std::vector<std::uint32_t> order; ///< with slack
-    std::vector<std::uint32_t> cell;  ///< of each point
+    std::vector<std::uint32_t> cell;  ///< of each point; free to be written over when all is built
     std::vector<Scalar> x, y, z;      ///< of the points, in this order, with slack
 
     void build(const CellGrid& grid, std::span<const Vec4> points, const Workers& workers);

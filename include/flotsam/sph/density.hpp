@@ -12,8 +12,8 @@ namespace flotsam {
 ///
 /// **Source:** Akinci et al. 2012, eq. 6. `fluid_pairs` and `boundary_pairs` have a row per fluid particle, the latter
 /// with V_b [m^3] as the weights of its kernel sums; `density` [kg/m^3] is written.
-void compute_density(const Pairs& fluid_pairs, const Pairs& boundary_pairs, Scalar kernel_at_zero, double particle_mass,
-                     double rest_density, const Workers& workers, std::span<Scalar> density);
+void compute_density(std::span<const Scalar> fluid_sums, std::span<const Scalar> boundary_sums, Scalar kernel_at_zero,
+                     double particle_mass, double rest_density, const Workers& workers, std::span<Scalar> density);
 
 /// p = k (rho - rho0) [Pa]: the linear equation of state. **Source:** Mueller et al. 2003, eq. 12.
 [[nodiscard]] constexpr double linear_equation_of_state(double density, double rest_density, double stiffness)

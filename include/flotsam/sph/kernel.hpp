@@ -49,6 +49,7 @@ class CubicSpline {
         const Scalar outer = Scalar(-6) * rest * rest / std::max(q, Scalar(1e-6));
         return slope_ * (q <= Scalar(0.5) ? inner : outer);
     }
+    [[nodiscard]] Scalar steepest() const { return Scalar(-12) * slope_; } ///< gradient_factor at r = 0, the lowest
 
   private:
     Scalar support_, inv_support_, peak_, slope_;
@@ -89,6 +90,8 @@ class QuinticSpline {
         const Scalar slope = pow4(above(3, t)) - Scalar(6) * pow4(above(2, t)) + Scalar(15) * pow4(above(1, t));
         return Scalar(-5) * factor_ * scale_ * scale_ * slope / t;
     }
+    /// gradient_factor's limit at r = 0, the lowest.
+    [[nodiscard]] Scalar steepest() const { return Scalar(-120) * factor_ * scale_ * scale_; }
 
   private:
     static Scalar above(int knot, Scalar t) { return std::max(Scalar(0), static_cast<Scalar>(knot) - t); }

@@ -41,19 +41,19 @@ bool touches(const Pairs& boundary_pairs, std::size_t i)
 
 } // namespace
 
-void PackingStress::find_second_layer(const Pairs& fluid_pairs, const Pairs& boundary_pairs, const Workers& workers)
+void PackingStress::find_second_layer(const SelfPairs& fluid_pairs, const Pairs& boundary_pairs, const Workers& workers)
 {
     const std::size_t n = fluid_pairs.start.size() - 1;
     second_layer_.assign(n, 0);
     workers.for_each(n, [&](std::size_t i) {
         if (!touches(boundary_pairs, i)) return;
         for (std::uint32_t k = fluid_pairs.start[i]; k < fluid_pairs.start[i + 1]; ++k)
-            std::atomic_ref(second_layer_[fluid_pairs.index[k]]).store(1, std::memory_order_relaxed);
+            std::atomic_ref(second_layer_[fluid_pairs.neighbour(i, k)]).store(1, std::memory_order_relaxed);
     });
 }
 
 void PackingStress::relieve(const PackingStressSettings& settings, double dt, const FluidState& fluid,
-                            const Pairs& fluid_pairs, const Pairs& boundary_pairs, const Workers& workers,
+                            const SelfPairs& fluid_pairs, const Pairs& boundary_pairs, const Workers& workers,
                             const ForceScratch& scratch, std::span<Vec4> velocity)
 {
     const std::size_t n = fluid.size();

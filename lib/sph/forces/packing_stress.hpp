@@ -46,12 +46,12 @@ struct PackingStressSettings {
 class PackingStress {
   public:
     /// Adds dt a_i to `velocity` (which is not read: the state's velocities are).
-    void relieve(const PackingStressSettings& settings, double dt, const FluidState& fluid, const Pairs& fluid_pairs,
-                 const Pairs& boundary_pairs, const Workers& workers, const ForceScratch& scratch,
-                 std::span<Vec4> velocity);
+    void relieve(const PackingStressSettings& settings, double dt, const FluidState& fluid,
+                 const SelfPairs& fluid_pairs, const Pairs& boundary_pairs, const Workers& workers,
+                 const ForceScratch& scratch, std::span<Vec4> velocity);
 
   private:
-    void find_second_layer(const Pairs& fluid_pairs, const Pairs& boundary_pairs, const Workers& workers);
+    void find_second_layer(const SelfPairs& fluid_pairs, const Pairs& boundary_pairs, const Workers& workers);
 
     std::vector<std::uint8_t> second_layer_; ///< 1: a neighbour touches boundary samples
 };

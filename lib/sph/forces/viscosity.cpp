@@ -18,7 +18,7 @@ Scalar softening_sq(const ViscositySettings& settings)
 
 /// Copies of positions and velocities, with half of each particle's strain rate in their fourth components and in
 /// `strain` (ViscousPull says how).
-void find_strains(const ViscositySettings& settings, const FluidState& fluid, const Pairs& pairs,
+void find_strains(const ViscositySettings& settings, const FluidState& fluid, const SelfPairs& pairs,
                   const Workers& workers, std::span<Vec4> position, std::span<Vec4> velocity, std::span<Vec4> strain)
 {
     const Scalar volume = static_cast<Scalar>(fluid.particle_mass / settings.rest_density);
@@ -37,8 +37,9 @@ void find_strains(const ViscositySettings& settings, const FluidState& fluid, co
     });
 }
 
-void add_between_particles(const ViscositySettings& settings, double dt, const FluidState& fluid, const Pairs& pairs,
-                           const Workers& workers, const ForceScratch& scratch, std::span<Vec4> velocity)
+void add_between_particles(const ViscositySettings& settings, double dt, const FluidState& fluid,
+                           const SelfPairs& pairs, const Workers& workers, const ForceScratch& scratch,
+                           std::span<Vec4> velocity)
 {
     const Scalar factor =
         static_cast<Scalar>(2.0 * (settings.dimensions + 2) * dt * fluid.particle_mass / settings.rest_density);
@@ -62,7 +63,7 @@ void add_between_particles(const ViscositySettings& settings, double dt, const F
 } // namespace
 
 void Viscosity::add(const ViscositySettings& settings, double dt, const FluidState& fluid,
-                    const BoundaryState& boundary, const Pairs& fluid_pairs, const Pairs& boundary_pairs,
+                    const BoundaryState& boundary, const SelfPairs& fluid_pairs, const Pairs& boundary_pairs,
                     std::span<const Vec3d> centers, const Workers& workers, const ForceScratch& scratch,
                     std::span<Vec4> velocity, std::span<Wrench> owner_impulses)
 {

@@ -37,7 +37,7 @@ class Viscosity {
     /// Adds dt a_i to `velocity` (which is not read: the state's velocities are) and the reaction impulses about
     /// `centers` to `owner_impulses` [N s], [N m s].
     void add(const ViscositySettings& settings, double dt, const FluidState& fluid, const BoundaryState& boundary,
-             const Pairs& fluid_pairs, const Pairs& boundary_pairs, std::span<const Vec3d> centers,
+             const SelfPairs& fluid_pairs, const Pairs& boundary_pairs, std::span<const Vec3d> centers,
              const Workers& workers, const ForceScratch& scratch, std::span<Vec4> velocity,
              std::span<Wrench> owner_impulses);
 

@@ -16,13 +16,13 @@ Eigen::Matrix<double, 6, 6> transposed_root(const Eigen::Matrix<double, 6, 6>& m
     return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-PressureSystem::PressureSystem(const Pairs& pairs, std::span<const Vec4> position, const Contacts& contacts,
-                               double particle_mass, const Workers& workers, Scratch& scratch)
+PressureSystem::PressureSystem(const SelfPairs& pairs, std::span<const Vec4> position, const Contacts& contacts,
+                               double particle_mass, const Workers& workers, Scratch& scratch, Lent lent)
     : pairs_(&pairs), contacts_(&contacts), mass_(static_cast<Scalar>(particle_mass)), workers_(&workers),
-      scratch_(&scratch)
+      scratch_(&scratch), lent_(lent)
 {
     constexpr std::uint32_t kSlice = 1024; // rows
-    std::vector<Vec4>&unknowns = scratch.unknowns, &own = scratch.own_gradient;
+    std::vector<Vec4>&unknowns = *lent.unknowns, &own = *lent.own_gradient;
     unknowns.assign(position.begin(), position.end());
     own.resize(size());
     scratch.change.resize(size());
@@ -50,12 +50,12 @@ PressureSystem::PressureSystem(const Pairs& pairs, std::span<const Vec4> positio
 
 void PressureSystem::velocity_change(Give give, std::span<Vec4> dv) const
 {
-    std::vector<Vec4>& unknowns = scratch_->unknowns;
+    std::vector<Vec4>& unknowns = *lent_.unknowns;
     workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) { give(begin, end, unknowns); });
     workers_->for_chunks(size(), [&](std::size_t, std::size_t begin, std::size_t end) {
         simd::sum_gradients(*pairs_, unknowns, begin, end, dv);
         for (std::size_t i = begin; i < end; ++i) {
-            dv[i] = -mass_ * dv[i] - unknowns[i][3] * scratch_->own_gradient[i];
+            dv[i] = -mass_ * dv[i] - unknowns[i][3] * (*lent_.own_gradient)[i];
             dv[i][3] = 0;
         }
     });
@@ -69,9 +69,9 @@ void PressureSystem::velocity_change(std::span<const Scalar> x, std::span<Vec4> 
 void PressureSystem::density_rate(std::span<const Vec4> velocity, std::size_t begin, std::size_t end,
                                   std::span<Scalar> rate) const
 {
-    simd::sum_divergences(*pairs_, scratch_->unknowns, velocity, begin, end, rate);
+    simd::sum_divergences(*pairs_, *lent_.unknowns, velocity, begin, end, rate);
     for (std::size_t i = begin; i < end; ++i) {
-        rate[i - begin] = velocity[i].head<3>().dot(scratch_->own_gradient[i].head<3>()) - mass_ * rate[i - begin];
+        rate[i - begin] = velocity[i].head<3>().dot((*lent_.own_gradient)[i].head<3>()) - mass_ * rate[i - begin];
     }
 }
 
@@ -122,7 +122,7 @@ void PressureSystem::impulses(std::span<Wrench> out) const
 void PressureSystem::fluid_diagonal(std::span<Scalar> diagonal) const
 {
     workers_->for_each(size(), [&](std::size_t i) {
-        const Vec4& own = scratch_->own_gradient[i];
+        const Vec4& own = (*lent_.own_gradient)[i];
         diagonal[i] = own.head<3>().squaredNorm() + own[3];
     });
 }

@@ -35,9 +35,7 @@ class PressureSystem {
     };
     /// What a system keeps, lent to it for its capacity; of one system at a time.
     struct Scratch {
-        std::vector<Vec4> unknowns;     ///< positions [m], and x of the last velocity_change as fourth components
-        std::vector<Vec4> own_gradient; ///< sum_j m grad W_ij + sum_b rho0 V_b grad W_ib, and sum_j |m grad W_ij|^2
-        std::vector<Vec4> change;       ///< dv of the last product [m/s]; as many as particles
+        std::vector<Vec4> change; ///< dv of the last product [m/s]; as many as particles
         std::vector<Slice> slices;
         std::vector<Eigen::Matrix<double, 6, 1>> sums; ///< of the slices
     };
@@ -52,9 +50,15 @@ class PressureSystem {
         }
     };
 
+    /// Arrays that others need before and after: at 16 bytes a particle, sharing them is worth it.
+    struct Lent {
+        std::vector<Vec4>* unknowns;     ///< positions [m], and x of the last velocity_change as fourth components
+        std::vector<Vec4>* own_gradient; ///< sum_j m grad W_ij + sum_b rho0 V_b grad W_ib, and sum_j |m grad W_ij|^2
+    };
+
     /// `position`: of the particles, as the pairs were found [m].
-    PressureSystem(const Pairs& pairs, std::span<const Vec4> position, const Contacts& contacts, double particle_mass,
-                   const Workers& workers, Scratch& scratch);
+    PressureSystem(const SelfPairs& pairs, std::span<const Vec4> position, const Contacts& contacts,
+                   double particle_mass, const Workers& workers, Scratch& scratch, Lent lent);
 
     [[nodiscard]] std::size_t size() const { return pairs_->rows(); }
     [[nodiscard]] const Workers& workers() const { return *workers_; }
@@ -62,7 +66,7 @@ class PressureSystem {
     [[nodiscard]] Scalar particle_mass() const { return mass_; }
 
     /// x of each particle in the last velocity_change.
-    [[nodiscard]] Scalar unknown(std::size_t i) const { return scratch_->unknowns[i][3]; }
+    [[nodiscard]] Scalar unknown(std::size_t i) const { return (*lent_.unknowns)[i][3]; }
 
     /// Room for a dv, of the scratch.
     [[nodiscard]] std::span<Vec4> change() const { return scratch_->change; }
@@ -93,11 +97,12 @@ class PressureSystem {
     template <class Unknown>
     void sum_impulses(Unknown&& x, std::span<Wrench> out) const;
 
-    const Pairs* pairs_;
+    const SelfPairs* pairs_;
     const Contacts* contacts_;
     Scalar mass_;
     const Workers* workers_;
     Scratch* scratch_;
+    Lent lent_;
 };
 
 class ResponsePreconditioner;

@@ -31,9 +31,12 @@ inline constexpr std::size_t kLanes = 4;
 #else
 inline constexpr std::size_t kLanes = 8;
 #endif
-static_assert(kLanes <= Pairs::kSlack && kLanes <= CellLists::kSlack);
+static_assert(kLanes <= Pairs::kSlack && kLanes <= SelfPairs::kSlack && kLanes <= CellLists::kSlack);
 using Floats = hn::FixedTag<float, kLanes>;
 using Ints = hn::FixedTag<std::uint32_t, kLanes>;
+using SignedInts = hn::FixedTag<std::int32_t, kLanes>;
+using Shorts = hn::FixedTag<std::int16_t, kLanes>;
+using UnsignedShorts = hn::FixedTag<std::uint16_t, kLanes>;
 using V = hn::Vec<Floats>;
 using U = hn::Vec<Ints>;
 
@@ -54,21 +57,37 @@ HWY_INLINE const float* at(const Vec4* points, std::uint32_t i)
     return reinterpret_cast<const float*>(points + i);
 }
 
-/// points[index[0]], points[index[1]], ..., transposed.
-HWY_INLINE V4 load_transposed(const Vec4* points, const std::uint32_t* index)
+/// Neighbours of a row, one for each lane, by their numbers.
+struct FarNeighbours {
+    const std::uint32_t* index;
+    HWY_INLINE const float* of(const Vec4* points, int lane) const { return at(points, index[lane]); }
+};
+/// The same by their distance from the row's own number.
+struct NearNeighbours {
+    std::size_t own;
+    const std::int16_t* offset;
+    HWY_INLINE const float* of(const Vec4* points, int lane) const
+    {
+        return reinterpret_cast<const float*>(points + own + static_cast<std::ptrdiff_t>(offset[lane]));
+    }
+};
+
+/// The points that the lanes' neighbours are, transposed.
+template <class Neighbours>
+HWY_INLINE V4 load_transposed(const Vec4* points, const Neighbours& neighbours)
 {
 #if HWY_TARGET == HWY_SCALAR
-    const float* p = at(points, index[0]);
+    const float* p = neighbours.of(points, 0);
     return {set(p[0]), set(p[1]), set(p[2]), set(p[3])};
 #else
     const Floats d;
     const hn::FixedTag<float, 4> four;
     const auto load = [&](int lane) FLOTSAM_INLINE {
-        const auto low = hn::Load(four, at(points, index[lane]));
+        const auto low = hn::Load(four, neighbours.of(points, lane));
 #if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_EMU128
         return low;
 #else
-        return hn::Combine(d, hn::Load(four, at(points, index[lane + 4])), low);
+        return hn::Combine(d, hn::Load(four, neighbours.of(points, lane + 4)), low);
 #endif
     };
     const V a = load(0), b = load(1), c = load(2), e = load(3);
@@ -107,17 +126,39 @@ HWY_INLINE V4 broadcast(const Vec4& p)
     return {set(c[0]), set(c[1]), set(c[2]), set(c[3])};
 }
 
-/// Calls visit(k, slope) for each group of pairs of row i, k the first of it; slopes of lanes behind the row's end are
-/// 0.
+/// Calls visit(neighbours, slope) for each group of pairs of row i. Lanes behind the row's end have slope 0 and some
+/// point for a neighbour.
 template <class Visit>
-HWY_INLINE void for_row(const Pairs& pairs, std::size_t i, Visit&& visit)
+HWY_INLINE void for_row(const SelfPairs& pairs, std::size_t i, Visit&& visit)
 {
-    const Floats d;
-    const float* slope = pairs.slope.data();
+    const SignedInts ints;
+    const Shorts shorts;
+    const UnsignedShorts unsigned_shorts;
+    const V unit = set(pairs.unit);
     const std::uint32_t last = pairs.start[i + 1];
+    const std::uint16_t* parts = pairs.parts.data();
+    const auto slope_of = [&](auto of_lanes) FLOTSAM_INLINE {
+        return hn::Mul(unit, hn::ConvertTo(Floats(), hn::PromoteTo(ints, of_lanes)));
+    };
+    const auto slope_of_rest = [&](std::uint32_t k) FLOTSAM_INLINE {
+        const auto in_row = hn::FirstN(unsigned_shorts, last - k);
+        return slope_of(hn::IfThenElseZero(in_row, hn::LoadU(unsigned_shorts, parts + k)));
+    };
     std::uint32_t k = pairs.start[i];
-    for (; k + kLanes <= last; k += kLanes) visit(k, hn::LoadU(d, slope + k));
-    if (k < last) visit(k, hn::IfThenElseZero(hn::FirstN(d, last - k), hn::LoadU(d, slope + k)));
+    if (pairs.is_far()) {
+        const std::uint32_t* index = pairs.index.data();
+        for (; k + kLanes <= last; k += kLanes)
+            visit(FarNeighbours{index + k}, slope_of(hn::LoadU(unsigned_shorts, parts + k)));
+        if (k < last) visit(FarNeighbours{index + k}, slope_of_rest(k));
+        return;
+    }
+    const std::int16_t* offset = pairs.offset.data();
+    for (; k + kLanes <= last; k += kLanes)
+        visit(NearNeighbours{i, offset + k}, slope_of(hn::LoadU(unsigned_shorts, parts + k)));
+    if (k == last) return;
+    HWY_ALIGN std::int16_t rest[kLanes]; // offsets of the next rows mean other points
+    hn::Store(hn::IfThenElseZero(hn::FirstN(shorts, last - k), hn::LoadU(shorts, offset + k)), shorts, rest);
+    visit(NearNeighbours{i, rest}, slope_of_rest(k));
 }
 
 HWY_INLINE void store_vec3(const V3& v, Vec4* out)

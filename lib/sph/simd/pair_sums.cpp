@@ -10,14 +10,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace flotsam::simd::HWY_NAMESPACE {
 
-void sum_gradients(const Pairs& pairs, const Vec4* points, std::size_t begin, std::size_t end, Vec4* out)
+void sum_gradients(const SelfPairs& pairs, const Vec4* points, std::size_t begin, std::size_t end, Vec4* out)
 {
     const V zero = hn::Zero(Floats());
     for (std::size_t i = begin; i < end; ++i) {
         const V4 own = broadcast(points[i]);
         V3 sum{zero, zero, zero};
-        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
-            const V4 other = load_transposed(points, pairs.index.data() + k);
+        for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE {
+            const V4 other = load_transposed(points, neighbours);
             const V3 x = difference(own, other);
             const V factor = hn::Mul(slope, other.w);
             sum = {hn::MulAdd(factor, x.x, sum.x), hn::MulAdd(factor, x.y, sum.y), hn::MulAdd(factor, x.z, sum.z)};
@@ -26,30 +26,30 @@ void sum_gradients(const Pairs& pairs, const Vec4* points, std::size_t begin, st
     }
 }
 
-void sum_divergences(const Pairs& pairs, const Vec4* position, const Vec4* velocity, std::size_t begin, std::size_t end,
-                     Scalar* out)
+void sum_divergences(const SelfPairs& pairs, const Vec4* position, const Vec4* velocity, std::size_t begin,
+                     std::size_t end, Scalar* out)
 {
     for (std::size_t i = begin; i < end; ++i) {
         const V4 own = broadcast(position[i]);
         V sum = hn::Zero(Floats());
-        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
-            const V3 x = difference(own, load_transposed(position, pairs.index.data() + k));
-            const V4 v = load_transposed(velocity, pairs.index.data() + k);
+        for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE {
+            const V3 x = difference(own, load_transposed(position, neighbours));
+            const V4 v = load_transposed(velocity, neighbours);
             sum = hn::MulAdd(slope, dot(x, v), sum);
         });
         out[i - begin] = sum_lanes(sum);
     }
 }
 
-void sum_gradient_squares(const Pairs& pairs, const Vec4* position, std::size_t begin, std::size_t end, Vec4* out)
+void sum_gradient_squares(const SelfPairs& pairs, const Vec4* position, std::size_t begin, std::size_t end, Vec4* out)
 {
     const V zero = hn::Zero(Floats());
     for (std::size_t i = begin; i < end; ++i) {
         const V4 own = broadcast(position[i]);
         V3 sum{zero, zero, zero};
         V squares = zero;
-        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
-            const V3 x = difference(own, load_transposed(position, pairs.index.data() + k));
+        for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE {
+            const V3 x = difference(own, load_transposed(position, neighbours));
             sum = {hn::MulAdd(slope, x.x, sum.x), hn::MulAdd(slope, x.y, sum.y), hn::MulAdd(slope, x.z, sum.z)};
             squares = hn::MulAdd(hn::Mul(slope, slope), dot(x, x), squares);
         });
@@ -58,16 +58,16 @@ void sum_gradient_squares(const Pairs& pairs, const Vec4* position, std::size_t 
     }
 }
 
-void fit_linear(const Pairs& pairs, const Vec4* position, const Vec4* velocity, std::size_t begin, std::size_t end,
+void fit_linear(const SelfPairs& pairs, const Vec4* position, const Vec4* velocity, std::size_t begin, std::size_t end,
                 LinearFit* fits)
 {
     const V zero = hn::Zero(Floats());
     for (std::size_t i = begin; i < end; ++i) {
         const V4 own = broadcast(position[i]), own_v = broadcast(velocity[i]);
         V3 by_x{zero, zero, zero}, by_y = by_x, by_z = by_x, straight = by_x, crossed = by_x;
-        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
-            const V3 x = difference(load_transposed(position, pairs.index.data() + k), own);
-            const V3 v = difference(load_transposed(velocity, pairs.index.data() + k), own_v);
+        for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE {
+            const V3 x = difference(load_transposed(position, neighbours), own);
+            const V3 v = difference(load_transposed(velocity, neighbours), own_v);
             // grad W_ij = slope (x_i - x_j) = -slope x
             const V gx = hn::Neg(hn::Mul(slope, x.x)), gy = hn::Neg(hn::Mul(slope, x.y)),
                     gz = hn::Neg(hn::Mul(slope, x.z));
@@ -86,7 +86,7 @@ void fit_linear(const Pairs& pairs, const Vec4* position, const Vec4* velocity, 
     }
 }
 
-void sum_viscous_pulls(const Pairs& pairs, const Vec4* position, const Vec4* velocity, const Vec4* strain,
+void sum_viscous_pulls(const SelfPairs& pairs, const Vec4* position, const Vec4* velocity, const Vec4* strain,
                        const ViscousPull& pull, std::size_t begin, std::size_t end, Vec4* out)
 {
     const V zero = hn::Zero(Floats()), soft = set(pull.softening_sq), nu = set(pull.viscosity), width = set(pull.width),
@@ -96,15 +96,14 @@ void sum_viscous_pulls(const Pairs& pairs, const Vec4* position, const Vec4* vel
         const V4 own = broadcast(position[i]), own_v = broadcast(velocity[i]);
         const V4 own_s = dissipates ? broadcast(strain[i]) : V4{zero, zero, zero, zero};
         V3 sum{zero, zero, zero};
-        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
-            const std::uint32_t* index = pairs.index.data() + k;
-            const V4 other = load_transposed(position, index), other_v = load_transposed(velocity, index);
+        for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE {
+            const V4 other = load_transposed(position, neighbours), other_v = load_transposed(velocity, neighbours);
             const V3 x = difference(own, other);
             const V s = dot(x, difference(own_v, other_v));
             const V distance_sq = hn::Add(dot(x, x), soft);
             V strength = hn::Mul(nu, s);
             if (dissipates) {
-                const V4 other_s = load_transposed(strain, index);
+                const V4 other_s = load_transposed(strain, neighbours);
                 const V3 straight{hn::Add(own.w, other.w), hn::Add(own_v.w, other_v.w), hn::Add(own_s.x, other_s.x)};
                 const V xy = hn::Add(own_s.y, other_s.y), xz = hn::Add(own_s.z, other_s.z),
                         yz = hn::Add(own_s.w, other_s.w);
@@ -123,14 +122,15 @@ void sum_viscous_pulls(const Pairs& pairs, const Vec4* position, const Vec4* vel
     }
 }
 
-void sum_virials(const Pairs& pairs, const Vec4* points, std::size_t begin, std::size_t end, std::array<Scalar, 6>* out)
+void sum_virials(const SelfPairs& pairs, const Vec4* points, std::size_t begin, std::size_t end,
+                 std::array<Scalar, 6>* out)
 {
     const V zero = hn::Zero(Floats());
     for (std::size_t i = begin; i < end; ++i) {
         const V4 own = broadcast(points[i]);
         V3 straight{zero, zero, zero}, crossed = straight;
-        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
-            const V4 other = load_transposed(points, pairs.index.data() + k);
+        for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE {
+            const V4 other = load_transposed(points, neighbours);
             const V3 x = difference(own, other);
             const V factor = hn::Mul(slope, hn::Add(own.w, other.w));
             const V fx = hn::Mul(factor, x.x), fy = hn::Mul(factor, x.y);
@@ -143,7 +143,7 @@ void sum_virials(const Pairs& pairs, const Vec4* points, std::size_t begin, std:
     }
 }
 
-void smooth_deviators(const Pairs& pairs, const Vec4* at, const Vec4* rest, std::size_t begin, std::size_t end,
+void smooth_deviators(const SelfPairs& pairs, const Vec4* at, const Vec4* rest, std::size_t begin, std::size_t end,
                       Vec4* out_at, Vec4* out_rest)
 {
     const V zero = hn::Zero(Floats());
@@ -151,9 +151,9 @@ void smooth_deviators(const Pairs& pairs, const Vec4* at, const Vec4* rest, std:
         const V4 own = broadcast(at[i]);
         V weights = zero, xx = zero;
         V4 sum{zero, zero, zero, zero};
-        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
-            const V4 other = load_transposed(at, pairs.index.data() + k);
-            const V4 tensor = load_transposed(rest, pairs.index.data() + k);
+        for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE {
+            const V4 other = load_transposed(at, neighbours);
+            const V4 tensor = load_transposed(rest, neighbours);
             const V3 x = difference(own, other);
             const V weight = hn::Mul(slope, dot(x, x));
             weights = hn::Add(weights, weight);
@@ -172,16 +172,16 @@ void smooth_deviators(const Pairs& pairs, const Vec4* at, const Vec4* rest, std:
     }
 }
 
-void sum_deviator_pushes(const Pairs& pairs, const Vec4* at, const Vec4* rest, std::size_t begin, std::size_t end,
+void sum_deviator_pushes(const SelfPairs& pairs, const Vec4* at, const Vec4* rest, std::size_t begin, std::size_t end,
                          Vec4* out)
 {
     const V zero = hn::Zero(Floats()), two = set(2), least = set(1e-30F);
     for (std::size_t i = begin; i < end; ++i) {
         const V4 own = broadcast(at[i]), own_t = broadcast(rest[i]);
         V3 sum{zero, zero, zero};
-        for_row(pairs, i, [&](std::uint32_t k, V slope) FLOTSAM_INLINE {
-            const V4 other = load_transposed(at, pairs.index.data() + k);
-            const V4 other_t = load_transposed(rest, pairs.index.data() + k);
+        for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE {
+            const V4 other = load_transposed(at, neighbours);
+            const V4 other_t = load_transposed(rest, neighbours);
             const V3 x = difference(own, other);
             const V xx = hn::Add(own.w, other.w), yy = hn::Add(own_t.x, other_t.x);
             const V xy = hn::Add(own_t.y, other_t.y), xz = hn::Add(own_t.z, other_t.z),
@@ -213,31 +213,31 @@ HWY_EXPORT(sum_virials);
 HWY_EXPORT(smooth_deviators);
 HWY_EXPORT(sum_deviator_pushes);
 
-void sum_gradients(const Pairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
+void sum_gradients(const SelfPairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
                    std::span<Vec4> out)
 {
     HWY_DYNAMIC_DISPATCH(sum_gradients)(pairs, at.data(), begin, end, out.data());
 }
 
-void sum_divergences(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+void sum_divergences(const SelfPairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
                      std::size_t begin, std::size_t end, std::span<Scalar> out)
 {
     HWY_DYNAMIC_DISPATCH(sum_divergences)(pairs, position.data(), velocity.data(), begin, end, out.data());
 }
 
-void sum_gradient_squares(const Pairs& pairs, std::span<const Vec4> position, std::size_t begin, std::size_t end,
+void sum_gradient_squares(const SelfPairs& pairs, std::span<const Vec4> position, std::size_t begin, std::size_t end,
                           std::span<Vec4> out)
 {
     HWY_DYNAMIC_DISPATCH(sum_gradient_squares)(pairs, position.data(), begin, end, out.data());
 }
 
-void fit_linear(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity, std::size_t begin,
-                std::size_t end, LinearFit* fits)
+void fit_linear(const SelfPairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+                std::size_t begin, std::size_t end, LinearFit* fits)
 {
     HWY_DYNAMIC_DISPATCH(fit_linear)(pairs, position.data(), velocity.data(), begin, end, fits);
 }
 
-void sum_viscous_pulls(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+void sum_viscous_pulls(const SelfPairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
                        std::span<const Vec4> strain, const ViscousPull& pull, std::size_t begin, std::size_t end,
                        std::span<Vec4> out)
 {
@@ -245,21 +245,21 @@ void sum_viscous_pulls(const Pairs& pairs, std::span<const Vec4> position, std::
     (pairs, position.data(), velocity.data(), strain.data(), pull, begin, end, out.data());
 }
 
-void sum_virials(const Pairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
+void sum_virials(const SelfPairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
                  std::array<Scalar, 6>* out)
 {
     HWY_DYNAMIC_DISPATCH(sum_virials)(pairs, at.data(), begin, end, out);
 }
 
-void smooth_deviators(const Pairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest, std::size_t begin,
+void smooth_deviators(const SelfPairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest, std::size_t begin,
                       std::size_t end, std::span<Vec4> out_at, std::span<Vec4> out_rest)
 {
     HWY_DYNAMIC_DISPATCH(smooth_deviators)
     (pairs, at.data(), rest.data(), begin, end, out_at.data(), out_rest.data());
 }
 
-void sum_deviator_pushes(const Pairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest, std::size_t begin,
-                         std::size_t end, std::span<Vec4> out)
+void sum_deviator_pushes(const SelfPairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest,
+                         std::size_t begin, std::size_t end, std::span<Vec4> out)
 {
     HWY_DYNAMIC_DISPATCH(sum_deviator_pushes)(pairs, at.data(), rest.data(), begin, end, out.data());
 }

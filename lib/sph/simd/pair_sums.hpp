@@ -17,15 +17,15 @@
 namespace flotsam::simd {
 
 /// out_i = sum_j w_j grad W_ij, out.w = 0; `at`: x, y, z and w.
-void sum_gradients(const Pairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
+void sum_gradients(const SelfPairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
                    std::span<Vec4> out);
 
 /// out_(i - begin) = sum_j v_j . grad W_ij
-void sum_divergences(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+void sum_divergences(const SelfPairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
                      std::size_t begin, std::size_t end, std::span<Scalar> out);
 
 /// out_i = (sum_j grad W_ij, sum_j |grad W_ij|^2)
-void sum_gradient_squares(const Pairs& pairs, std::span<const Vec4> position, std::size_t begin, std::size_t end,
+void sum_gradient_squares(const SelfPairs& pairs, std::span<const Vec4> position, std::size_t begin, std::size_t end,
                           std::span<Vec4> out);
 
 /// sum_j (v_j - v_i) grad W_ij^T and sum_j (x_j - x_i) grad W_ij^T: each row of three components of the gradient.
@@ -33,8 +33,8 @@ struct LinearFit {
     std::array<Scalar, 9> velocity; ///< row by row
     std::array<Scalar, 6> shape;    ///< symmetric: xx, yy, zz, xy, xz, yz
 };
-void fit_linear(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity, std::size_t begin,
-                std::size_t end, LinearFit* fits);
+void fit_linear(const SelfPairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+                std::size_t begin, std::size_t end, LinearFit* fits);
 
 /// What a pair's viscous pull is made of; forces/viscosity.hpp has the formula.
 struct ViscousPull {
@@ -45,21 +45,21 @@ struct ViscousPull {
 };
 /// out_i = sum_j pull_ij / (|x_ij|^2 + softening^2) grad W_ij. Half the strain rate of a particle stands in the fourth
 /// components: position.w xx, velocity.w yy, and strain zz, xy, xz, yz.
-void sum_viscous_pulls(const Pairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
+void sum_viscous_pulls(const SelfPairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
                        std::span<const Vec4> strain, const ViscousPull& pull, std::size_t begin, std::size_t end,
                        std::span<Vec4> out);
 
 /// out_i = sum_j (w_i + w_j) grad W_ij x_ij^T, symmetric: xx, yy, zz, xy, xz, yz; `at`: x, y, z and w.
-void sum_virials(const Pairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
+void sum_virials(const SelfPairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
                  std::array<Scalar, 6>* out);
 
 /// Symmetric tensors T without trace: xx stands in the fourth component of `at`, and rest holds yy, xy, xz, yz.
 /// out = sum_j w_ij T_j / sum_j w_ij, w_ij = -grad W_ij . x_ij, in the same form; 0 without neighbours.
-void smooth_deviators(const Pairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest, std::size_t begin,
+void smooth_deviators(const SelfPairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest, std::size_t begin,
                       std::size_t end, std::span<Vec4> out_at, std::span<Vec4> out_rest);
 
 /// out_i = sum_j e^T (T_i + T_j) e grad W_ij, e = x_ij / |x_ij|, T as above; out.w = 0.
-void sum_deviator_pushes(const Pairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest, std::size_t begin,
-                         std::size_t end, std::span<Vec4> out);
+void sum_deviator_pushes(const SelfPairs& pairs, std::span<const Vec4> at, std::span<const Vec4> rest,
+                         std::size_t begin, std::size_t end, std::span<Vec4> out);
 
 } // namespace flotsam::simd

@@ -97,6 +97,19 @@ HWY_INLINE Lanes compress([[maybe_unused]] D d, Lanes v, Mask mask)
 #endif
 }
 
+/// Stores the first `count` lanes; up to all of them where that does not go beyond `room` entries.
+template <class D, class Lanes, class T>
+HWY_INLINE void store_first(D d, Lanes v, std::size_t count, std::size_t room, T* out)
+{
+    if (kLanes <= room) {
+        hn::StoreU(v, d, out);
+        return;
+    }
+    HWY_ALIGN T values[kLanes];
+    hn::Store(v, d, values);
+    std::copy_n(values, count, out);
+}
+
 void count_neighbours(const Search& search, std::size_t begin, std::size_t end, std::uint32_t* counts)
 {
     Ranges ranges;
@@ -120,18 +133,9 @@ void write_neighbours(const Search& search, std::size_t begin, std::size_t end, 
             const std::size_t count = hn::CountTrue(d, near);
             const U kept = compress(du, index, hn::RebindMask(du, near));
             const V kept_sq = compress(d, distance_sq, near);
-            // Whole registers while what is too much falls into this chunk's rows: those are written later.
-            if (k + kLanes <= chunk_end) {
-                hn::StoreU(kept, du, pairs.index.data() + k);
-                hn::StoreU(kept_sq, d, pairs.slope.data() + k);
-            } else {
-                HWY_ALIGN std::uint32_t indices[kLanes];
-                HWY_ALIGN float squares[kLanes];
-                hn::Store(kept, du, indices);
-                hn::Store(kept_sq, d, squares);
-                std::copy_n(indices, count, pairs.index.begin() + static_cast<std::ptrdiff_t>(k));
-                std::copy_n(squares, count, pairs.slope.begin() + static_cast<std::ptrdiff_t>(k));
-            }
+            // What is too much falls into this chunk's rows, which are written later.
+            store_first(du, kept, count, chunk_end - k, pairs.index.data() + k);
+            store_first(d, kept_sq, count, chunk_end - k, pairs.slope.data() + k);
             k += count;
         });
     }
@@ -202,13 +206,8 @@ HWY_INLINE void evaluate(const Kernel& kernel, std::span<const Scalar> weights, 
                 value = hn::Mul(value, hn::Load(d, weight));
             }
             sum = hn::Add(sum, hn::IfThenElseZero(in_row, value));
-            if (k + kLanes <= last) {
-                hn::StoreU(slope, d, pairs.slope.data() + k);
-            } else { // what follows are squared distances still, or another thread's
-                HWY_ALIGN float slopes[kLanes];
-                hn::Store(slope, d, slopes);
-                std::copy_n(slopes, last - k, pairs.slope.begin() + k);
-            }
+            // What follows are squared distances still, or another thread's.
+            store_first(d, slope, last - k, last - k, pairs.slope.data() + k);
         }
         pairs.kernel_sum[i] = sum_lanes(sum);
     }
@@ -226,6 +225,74 @@ void evaluate_cubic(const CubicSpline& kernel, std::span<const Scalar> weights, 
     evaluate(Cubic(kernel), weights, begin, end, pairs);
 }
 
+/// The near candidates of point i, and their squared distances; the scratch has room for them and a register.
+HWY_INLINE void gather_row(const Search& search, std::size_t i, Ranges& ranges, RowScratch& scratch)
+{
+    const Floats d;
+    const Ints du;
+    std::size_t k = 0;
+    for_candidates(search, i, ranges, [&](U index, auto near, V distance_sq) FLOTSAM_INLINE {
+        hn::StoreU(compress(du, index, hn::RebindMask(du, near)), du, scratch.index.data() + k);
+        hn::StoreU(compress(d, distance_sq, near), d, scratch.distance_sq.data() + k);
+        k += hn::CountTrue(d, near);
+    });
+}
+
+template <class Kernel>
+HWY_INLINE std::uint32_t write_rows(const Search& search, const Kernel& kernel, std::size_t begin, std::size_t end,
+                                    RowScratch& scratch, SelfPairs& pairs)
+{
+    const Floats d;
+    const Ints du;
+    const SignedInts di;
+    const V parts_per_slope = set(1 / pairs.unit);
+    const std::size_t chunk_end = pairs.start[end];
+    const bool far = pairs.is_far();
+    Ranges ranges;
+    auto reach = hn::Zero(di);
+    for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t first = pairs.start[i], count = pairs.start[i + 1] - first;
+        if (scratch.index.size() < count + kLanes) {
+            scratch.index.resize(2 * (count + kLanes));
+            scratch.distance_sq.resize(2 * (count + kLanes));
+        }
+        gather_row(search, i, ranges, scratch);
+        const auto own = hn::Set(di, static_cast<std::int32_t>(i));
+        V sum = hn::Zero(d);
+        for (std::size_t k = 0; k < count; k += kLanes) {
+            const std::size_t lanes = std::min(kLanes, count - k), room = chunk_end - first - k;
+            const auto in_row = hn::FirstN(d, lanes);
+            V slope, value;
+            kernel(hn::Sqrt(hn::IfThenElseZero(in_row, hn::LoadU(d, scratch.distance_sq.data() + k))), slope, value);
+            sum = hn::Add(sum, hn::IfThenElseZero(in_row, value));
+            const auto parts = hn::NearestInt(hn::Mul(slope, parts_per_slope));
+            store_first(UnsignedShorts(), hn::DemoteTo(UnsignedShorts(), parts), lanes, room,
+                        pairs.parts.data() + first + k);
+            const U index = hn::LoadU(du, scratch.index.data() + k);
+            const auto offset = hn::Sub(hn::BitCast(di, index), own);
+            reach = hn::Max(reach, hn::IfThenElseZero(hn::RebindMask(di, in_row), hn::Abs(offset)));
+            if (far)
+                store_first(du, index, lanes, room, pairs.index.data() + first + k);
+            else
+                store_first(Shorts(), hn::DemoteTo(Shorts(), offset), lanes, room, pairs.offset.data() + first + k);
+        }
+        pairs.kernel_sum[i] = sum_lanes(sum);
+    }
+    return static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(di, reach)));
+}
+
+std::uint32_t write_self_quintic(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
+                                 RowScratch& scratch, SelfPairs& pairs)
+{
+    return write_rows(search, Quintic(kernel), begin, end, scratch, pairs);
+}
+
+std::uint32_t write_self_cubic(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
+                               RowScratch& scratch, SelfPairs& pairs)
+{
+    return write_rows(search, Cubic(kernel), begin, end, scratch, pairs);
+}
+
 } // namespace flotsam::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -236,6 +303,8 @@ HWY_EXPORT(count_neighbours);
 HWY_EXPORT(write_neighbours);
 HWY_EXPORT(evaluate_quintic);
 HWY_EXPORT(evaluate_cubic);
+HWY_EXPORT(write_self_quintic);
+HWY_EXPORT(write_self_cubic);
 
 void count_neighbours(const Search& search, std::size_t begin, std::size_t end, std::uint32_t* counts)
 {
@@ -257,6 +326,18 @@ void evaluate_kernel(const CubicSpline& kernel, std::span<const Scalar> weights,
                      Pairs& pairs)
 {
     HWY_DYNAMIC_DISPATCH(evaluate_cubic)(kernel, weights, begin, end, pairs);
+}
+
+std::uint32_t write_self_pairs(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
+                               RowScratch& scratch, SelfPairs& pairs)
+{
+    return HWY_DYNAMIC_DISPATCH(write_self_quintic)(search, kernel, begin, end, scratch, pairs);
+}
+
+std::uint32_t write_self_pairs(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
+                               RowScratch& scratch, SelfPairs& pairs)
+{
+    return HWY_DYNAMIC_DISPATCH(write_self_cubic)(search, kernel, begin, end, scratch, pairs);
 }
 
 } // namespace flotsam::simd

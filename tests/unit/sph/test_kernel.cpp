@@ -59,11 +59,11 @@ TEST_CASE("worked example: three unit masses at r = 0, 1, 1.5 of a poly6 kernel 
     CellLists cells;
     cells.build(grid, points, workers);
     NeighbourSearch search;
-    Pairs pairs, no_boundary;
+    Pairs pairs;
     search.find(kernel, grid, cells, points, true, {}, workers, pairs);
-    no_boundary.kernel_sum.assign(points.size(), 0);
+    const std::vector<Scalar> no_boundary(points.size());
     std::vector<Scalar> density(points.size());
-    compute_density(pairs, no_boundary, kernel.value(0), 1.0, 1.0, workers, density);
+    compute_density(pairs.kernel_sum, no_boundary, kernel.value(0), 1.0, 1.0, workers, density);
     // W = 0.3183, 0.1343, 0.0267; density 0.479; with rest density 0.4 and stiffness 100 the pressure is 7.925.
     CHECK(static_cast<double>(kernel.value(0)) == Approx(0.3183).margin(5e-5));
     CHECK(static_cast<double>(kernel.value(1)) == Approx(0.1343).margin(5e-5));

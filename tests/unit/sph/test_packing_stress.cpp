@@ -16,7 +16,8 @@ constexpr int kCells = 24; ///< of the block, along each edge
 struct Block {
     int dimensions;
     FluidState fluid;
-    Pairs pairs, none;
+    SelfPairs pairs;
+    Pairs none;
     std::vector<Vec4> change;
 
     /// `stretch`: lengths along x times this, along z divided by it.
@@ -43,7 +44,7 @@ struct Block {
         const CellGrid grid = CellGrid::around(fluid.position, {}, static_cast<double>(kernel.support()), 1 << 18);
         CellLists lists;
         lists.build(grid, fluid.position, workers);
-        NeighbourSearch().find(kernel, grid, lists, fluid.position, true, {}, workers, pairs);
+        NeighbourSearch().find(kernel, grid, lists, fluid.position, workers, pairs);
         none.start.assign(size() + 1, 0);
     }
     [[nodiscard]] std::size_t size() const { return fluid.position.size(); }
@@ -61,10 +62,10 @@ struct Block {
     {
         Vec3d sum = Vec3d::Zero();
         for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
-            const std::uint32_t j = pairs.index[k];
+            const std::uint32_t j = pairs.neighbour(i, k);
             const double both = static_cast<double>(fluid.pressure[i]) + static_cast<double>(fluid.pressure[j]);
             sum -=
-                fluid.particle_mass / (kWater * kWater) * both * static_cast<double>(pairs.slope[k]) * (at(i) - at(j));
+                fluid.particle_mass / (kWater * kWater) * both * static_cast<double>(pairs.slope(k)) * (at(i) - at(j));
         }
         return sum;
     }

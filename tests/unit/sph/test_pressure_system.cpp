@@ -19,10 +19,12 @@ struct Cloud {
     std::vector<Vec4> points;
     BoundaryState boundary;
     std::vector<Vec3d> centers{Vec3d(0.1, 0.2, 0.3), Vec3d(0.35, 0.35, 0.35)};
-    Pairs pairs, boundary_pairs;
+    SelfPairs pairs;
+    Pairs boundary_pairs;
     Contacts contacts;
     std::vector<Scalar> density;
     PressureSystem::Scratch scratch;
+    std::vector<Vec4> unknowns, own_gradient;
 
     KernelKind kernel_kind;
 
@@ -64,15 +66,18 @@ struct Cloud {
         boundary_cells.build(grid, boundary.position, workers);
         NeighbourSearch search;
         kernel.visit([&](const auto& spline) {
-            search.find(spline, grid, cells, points, true, {}, workers, pairs);
+            search.find(spline, grid, cells, points, workers, pairs);
             search.find(spline, grid, boundary_cells, points, false, boundary.volume, workers, boundary_pairs);
         });
         ContactBuilder().build(boundary_pairs, points, boundary, centers, kRho0, workers, contacts);
         density.resize(points.size());
-        compute_density(pairs, boundary_pairs, kernel.value(0), mass, kRho0, workers, density);
+        compute_density(pairs.kernel_sum, boundary_pairs.kernel_sum, kernel.value(0), mass, kRho0, workers, density);
     }
 
-    [[nodiscard]] PressureSystem system() { return {pairs, points, contacts, mass, workers, scratch}; }
+    [[nodiscard]] PressureSystem system()
+    {
+        return {pairs, points, contacts, mass, workers, scratch, {&unknowns, &own_gradient}};
+    }
     void respond(std::span<const Wrench> impulses, std::span<Twist> twists) const
     {
         const double inertia = 0.4 * body_mass * 0.01;

@@ -78,8 +78,11 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
     for (const std::string& name : sets) {
         CAPTURE(name);
         const InstructionSet taken(name);
-        Pairs pairs;
-        NeighbourSearch().find(kernel, grid, lists, points.position, true, points.weights, workers, pairs);
+        Pairs weighted_pairs;
+        NeighbourSearch().find(kernel, grid, lists, points.position, true, points.weights, workers, weighted_pairs);
+        SelfPairs pairs;
+        NeighbourSearch().find(kernel, grid, lists, points.position, workers, pairs);
+        REQUIRE(pairs.start == weighted_pairs.start);
         REQUIRE(pairs.rows() == count);
         const double volume = std::pow(Points::kSpacing, 3);
         simd::ViscousPull pull;
@@ -106,8 +109,9 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
         simd::smooth_deviators(pairs, at, points.strain, 0, count, smooth_at, smooth_rest);
         simd::sum_deviator_pushes(pairs, at, points.strain, 0, count, pushes);
         for (std::size_t i = 0; i < count; ++i) {
-            std::vector<std::uint32_t> expected,
-                found(pairs.index.begin() + pairs.start[i], pairs.index.begin() + pairs.start[i + 1]);
+            std::vector<std::uint32_t> expected, found;
+            for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) found.push_back(pairs.neighbour(i, k));
+            CHECK(std::equal(found.begin(), found.end(), weighted_pairs.index.begin() + pairs.start[i]));
             double kernel_sum = 0.0, divergence = 0.0, square = 0.0, size = 0.0, pull_size = 0.0;
             Vec3d gradient = Vec3d::Zero(), plain = Vec3d::Zero(), pulled = Vec3d::Zero();
             Mat3 velocity = Mat3::Zero(), shape = Mat3::Zero(), virial = Mat3::Zero(), weighted = Mat3::Zero();
@@ -149,7 +153,7 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
             }
             std::sort(found.begin(), found.end());
             REQUIRE(found == expected);
-            CHECK(static_cast<double>(pairs.kernel_sum[i]) * volume ==
+            CHECK(static_cast<double>(weighted_pairs.kernel_sum[i]) * volume ==
                   Approx(kernel_sum * volume).epsilon(2e-6).margin(1e-9));
             check_vec(wide(gradients[i]), gradient, 3.0 * size);
             CHECK(gradients[i][3] == 0);

@@ -45,7 +45,8 @@ Vec4 in_floats(const Vec3d& v, double w)
 }
 
 struct Neighbourhood {
-    Pairs fluid, boundary;
+    SelfPairs fluid;
+    Pairs boundary;
 };
 
 Neighbourhood pairs_of(const Kernel& kernel, const std::vector<Vec4>& points, const BoundaryState& boundary)
@@ -58,7 +59,7 @@ Neighbourhood pairs_of(const Kernel& kernel, const std::vector<Vec4>& points, co
     Neighbourhood result;
     NeighbourSearch search;
     kernel.visit([&](const auto& spline) {
-        search.find(spline, grid, fluid_cells, points, true, {}, workers, result.fluid);
+        search.find(spline, grid, fluid_cells, points, workers, result.fluid);
         search.find(spline, grid, boundary_cells, points, false, boundary.volume, workers, result.boundary);
     });
     return result;
