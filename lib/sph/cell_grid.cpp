@@ -25,13 +25,15 @@ CellGrid CellGrid::around(std::span<const Vec4> a, std::span<const Vec4> b, doub
     // A few far particles must not cost memory: the widest axes give way first, the border cells take what is beyond.
     const Vec3d extent = (high - low).head<3>().cast<double>() + Vec3d::Constant(0.02 * cell);
     double budget = static_cast<double>(max_cells);
-    std::array<int, 3> axes = {0, 1, 2};
+    std::array<int, 3> axes = {0, 1, 2}; // shortest first
     std::sort(axes.begin(), axes.end(), [&](int x, int y) { return extent[x] < extent[y]; });
     for (int k = 0; k < 3; ++k) {
         const double share = std::pow(budget, 1.0 / (3 - k));
         grid.cells[axes[static_cast<std::size_t>(k)]] = max_along(share, extent[axes[static_cast<std::size_t>(k)]]);
         budget /= grid.cells[axes[static_cast<std::size_t>(k)]];
     }
+    std::stable_sort(axes.begin(), axes.end(), [&](int x, int y) { return grid.cells[x] < grid.cells[y]; });
+    grid.axes = {axes[1], axes[0], axes[2]};
     return grid;
 }
 

@@ -17,16 +17,9 @@ void visit_around(const CellGrid& grid, const CellLists& cells, const Vec3d& p, 
 {
     if (cells.start.empty()) return;
     const Vec4 place(static_cast<Scalar>(p.x()), static_cast<Scalar>(p.y()), static_cast<Scalar>(p.z()), Scalar(0));
-    const Eigen::Vector3i home = grid.cell_of(place);
-    const Eigen::Vector3i low = (home.array() - reach).max(0);
-    const Eigen::Vector3i high = (home.array() + reach).min(grid.cells.array() - 1);
-    for (int z = low.z(); z <= high.z(); ++z) {
-        for (int y = low.y(); y <= high.y(); ++y) {
-            const std::uint32_t first = cells.start[grid.index_of({low.x(), y, z})];
-            const std::uint32_t last = cells.start[grid.index_of({high.x(), y, z}) + 1];
-            for (std::uint32_t k = first; k < last; ++k) visit(cells.order[k]);
-        }
-    }
+    grid.visit_rows(grid.cell_of(place), reach, [&](std::uint32_t first, std::uint32_t last) {
+        for (std::uint32_t k = cells.start[first]; k < cells.start[last + 1]; ++k) visit(cells.order[k]);
+    });
 }
 
 } // namespace

@@ -24,30 +24,22 @@ namespace flotsam::simd::HWY_NAMESPACE {
     return table;
 }();
 
-/// Ranges of the lists that hold the points of the 3 x 3 x 3 cells around a cell; the cells of a row along x are one.
+/// Ranges of the lists that hold the points of the 3 x 3 x 3 cells around a cell; the cells of a row are one.
 struct Ranges {
     std::uint32_t first[9], last[9];
     int count = 0;
     std::uint32_t cell = ~std::uint32_t(0);
 };
 
-inline void find_ranges(const CellGrid& grid, const CellLists& lists, int hx, int hy, int hz, Ranges& ranges)
+inline void find_ranges(const CellGrid& grid, const CellLists& lists, const Eigen::Vector3i& home, Ranges& ranges)
 {
-    const int nx = grid.cells[0], ny = grid.cells[1], nz = grid.cells[2];
-    const int low_x = std::max(hx - 1, 0), high_x = std::min(hx + 1, nx - 1);
     ranges.count = 0;
-    for (int z = std::max(hz - 1, 0); z <= std::min(hz + 1, nz - 1); ++z) {
-        for (int y = std::max(hy - 1, 0); y <= std::min(hy + 1, ny - 1); ++y) {
-            const std::size_t row =
-                static_cast<std::size_t>(nx) *
-                (static_cast<std::size_t>(y) + static_cast<std::size_t>(ny) * static_cast<std::size_t>(z));
-            const std::uint32_t first = lists.start[row + static_cast<std::size_t>(low_x)];
-            const std::uint32_t last = lists.start[row + static_cast<std::size_t>(high_x) + 1];
-            if (first == last) continue;
-            ranges.first[ranges.count] = first;
-            ranges.last[ranges.count++] = last;
-        }
-    }
+    grid.visit_rows(home, 1, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
+        const std::uint32_t first = lists.start[first_cell], last = lists.start[last_cell + 1];
+        if (first == last) return;
+        ranges.first[ranges.count] = first;
+        ranges.last[ranges.count++] = last;
+    });
 }
 
 /// Calls visit(indices, which are near, r^2) for each group of candidates of point i.
@@ -60,7 +52,7 @@ HWY_INLINE void for_candidates(const Search& search, std::size_t i, Ranges& rang
     const Eigen::Vector3i home = search.grid->cell_of(search.points[i]);
     const std::uint32_t cell = search.grid->index_of(home);
     if (cell != ranges.cell) {
-        find_ranges(*search.grid, lists, home[0], home[1], home[2], ranges);
+        find_ranges(*search.grid, lists, home, ranges);
         ranges.cell = cell;
     }
     const float* own = reinterpret_cast<const float*>(&search.points[i]);
