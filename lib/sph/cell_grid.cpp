@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace flotsam {
 
@@ -32,7 +33,8 @@ CellGrid CellGrid::around(std::span<const Vec4> a, std::span<const Vec4> b, doub
         grid.cells[axes[static_cast<std::size_t>(k)]] = max_along(share, extent[axes[static_cast<std::size_t>(k)]]);
         budget /= grid.cells[axes[static_cast<std::size_t>(k)]];
     }
-    std::stable_sort(axes.begin(), axes.end(), [&](int x, int y) { return grid.cells[x] < grid.cells[y]; });
+    std::sort(axes.begin(), axes.end(),
+              [&](int x, int y) { return std::pair(grid.cells[x], x) < std::pair(grid.cells[y], y); });
     grid.axes = {axes[1], axes[0], axes[2]};
     return grid;
 }

@@ -90,8 +90,7 @@ void NeighbourSearch::find_among(const Spline& kernel, const CellGrid& grid, con
     const auto write = [&] {
         std::atomic<std::uint32_t> reach = 0;
         workers.for_chunks(count, [&](std::size_t, std::size_t begin, std::size_t end) {
-            thread_local simd::RowScratch scratch;
-            const std::uint32_t of_chunk = simd::write_self_pairs(search, kernel, begin, end, scratch, pairs);
+            const std::uint32_t of_chunk = simd::write_self_pairs(search, kernel, begin, end, pairs);
             std::uint32_t before = reach;
             while (before < of_chunk && !reach.compare_exchange_weak(before, of_chunk)) {
             }

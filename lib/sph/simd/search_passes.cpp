@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 HWY_BEFORE_NAMESPACE();
 namespace flotsam::simd::HWY_NAMESPACE {
@@ -217,22 +218,42 @@ void evaluate_cubic(const CubicSpline& kernel, std::span<const Scalar> weights, 
     evaluate(Cubic(kernel), weights, begin, end, pairs);
 }
 
-/// The near candidates of point i, and their squared distances; the scratch has room for them and a register.
-HWY_INLINE void gather_row(const Search& search, std::size_t i, Ranges& ranges, RowScratch& scratch)
-{
-    const Floats d;
-    const Ints du;
-    std::size_t k = 0;
-    for_candidates(search, i, ranges, [&](U index, auto near, V distance_sq) FLOTSAM_INLINE {
-        hn::StoreU(compress(du, index, hn::RebindMask(du, near)), du, scratch.index.data() + k);
-        hn::StoreU(compress(d, distance_sq, near), d, scratch.distance_sq.data() + k);
-        k += hn::CountTrue(d, near);
-    });
-}
+/// Neighbours of one point and their squared distances.
+class Row {
+  public:
+    /// Of point i, which has `count`.
+    HWY_INLINE void gather(const Search& search, std::size_t i, std::size_t count, Ranges& ranges)
+    {
+        const Floats d;
+        const Ints du;
+        if (count > kUsual) { // water that has been squeezed into a corner
+            more_index_.resize(count + kLanes);
+            more_distance_sq_.resize(count + kLanes);
+        }
+        index = count > kUsual ? more_index_.data() : index_;
+        distance_sq = count > kUsual ? more_distance_sq_.data() : distance_sq_;
+        std::size_t k = 0;
+        for_candidates(search, i, ranges, [&](U other, auto near, V sq) FLOTSAM_INLINE {
+            hn::StoreU(compress(du, other, hn::RebindMask(du, near)), du, index + k);
+            hn::StoreU(compress(d, sq, near), d, distance_sq + k);
+            k += hn::CountTrue(d, near);
+        });
+    }
+
+    std::uint32_t* index = nullptr;
+    float* distance_sq = nullptr;
+
+  private:
+    static constexpr std::size_t kUsual = 512;
+    HWY_ALIGN std::uint32_t index_[kUsual + kLanes];
+    HWY_ALIGN float distance_sq_[kUsual + kLanes];
+    std::vector<std::uint32_t> more_index_;
+    std::vector<float> more_distance_sq_;
+};
 
 template <class Kernel>
 HWY_INLINE std::uint32_t write_rows(const Search& search, const Kernel& kernel, std::size_t begin, std::size_t end,
-                                    RowScratch& scratch, SelfPairs& pairs)
+                                    SelfPairs& pairs)
 {
     const Floats d;
     const Ints du;
@@ -241,26 +262,23 @@ HWY_INLINE std::uint32_t write_rows(const Search& search, const Kernel& kernel, 
     const std::size_t chunk_end = pairs.start[end];
     const bool far = pairs.is_far();
     Ranges ranges;
+    Row row;
     auto reach = hn::Zero(di);
     for (std::size_t i = begin; i < end; ++i) {
         const std::size_t first = pairs.start[i], count = pairs.start[i + 1] - first;
-        if (scratch.index.size() < count + kLanes) {
-            scratch.index.resize(2 * (count + kLanes));
-            scratch.distance_sq.resize(2 * (count + kLanes));
-        }
-        gather_row(search, i, ranges, scratch);
+        row.gather(search, i, count, ranges);
         const auto own = hn::Set(di, static_cast<std::int32_t>(i));
         V sum = hn::Zero(d);
         for (std::size_t k = 0; k < count; k += kLanes) {
             const std::size_t lanes = std::min(kLanes, count - k), room = chunk_end - first - k;
             const auto in_row = hn::FirstN(d, lanes);
             V slope, value;
-            kernel(hn::Sqrt(hn::IfThenElseZero(in_row, hn::LoadU(d, scratch.distance_sq.data() + k))), slope, value);
+            kernel(hn::Sqrt(hn::IfThenElseZero(in_row, hn::LoadU(d, row.distance_sq + k))), slope, value);
             sum = hn::Add(sum, hn::IfThenElseZero(in_row, value));
             const auto parts = hn::NearestInt(hn::Mul(slope, parts_per_slope));
             store_first(UnsignedShorts(), hn::DemoteTo(UnsignedShorts(), parts), lanes, room,
                         pairs.parts.data() + first + k);
-            const U index = hn::LoadU(du, scratch.index.data() + k);
+            const U index = hn::LoadU(du, row.index + k);
             const auto offset = hn::Sub(hn::BitCast(di, index), own);
             reach = hn::Max(reach, hn::IfThenElseZero(hn::RebindMask(di, in_row), hn::Abs(offset)));
             if (far)
@@ -274,15 +292,15 @@ HWY_INLINE std::uint32_t write_rows(const Search& search, const Kernel& kernel, 
 }
 
 std::uint32_t write_self_quintic(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
-                                 RowScratch& scratch, SelfPairs& pairs)
+                                 SelfPairs& pairs)
 {
-    return write_rows(search, Quintic(kernel), begin, end, scratch, pairs);
+    return write_rows(search, Quintic(kernel), begin, end, pairs);
 }
 
 std::uint32_t write_self_cubic(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
-                               RowScratch& scratch, SelfPairs& pairs)
+                               SelfPairs& pairs)
 {
-    return write_rows(search, Cubic(kernel), begin, end, scratch, pairs);
+    return write_rows(search, Cubic(kernel), begin, end, pairs);
 }
 
 } // namespace flotsam::simd::HWY_NAMESPACE
@@ -321,15 +339,15 @@ void evaluate_kernel(const CubicSpline& kernel, std::span<const Scalar> weights,
 }
 
 std::uint32_t write_self_pairs(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
-                               RowScratch& scratch, SelfPairs& pairs)
+                               SelfPairs& pairs)
 {
-    return HWY_DYNAMIC_DISPATCH(write_self_quintic)(search, kernel, begin, end, scratch, pairs);
+    return HWY_DYNAMIC_DISPATCH(write_self_quintic)(search, kernel, begin, end, pairs);
 }
 
 std::uint32_t write_self_pairs(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
-                               RowScratch& scratch, SelfPairs& pairs)
+                               SelfPairs& pairs)
 {
-    return HWY_DYNAMIC_DISPATCH(write_self_cubic)(search, kernel, begin, end, scratch, pairs);
+    return HWY_DYNAMIC_DISPATCH(write_self_cubic)(search, kernel, begin, end, pairs);
 }
 
 } // namespace flotsam::simd

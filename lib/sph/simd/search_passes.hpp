@@ -7,7 +7,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 /// What the neighbour search does for the rows [begin, end) of the pairs, on one thread; as sph/simd/pair_sums.hpp.
 namespace flotsam::simd {
@@ -33,16 +32,11 @@ void evaluate_kernel(const QuinticSpline& kernel, std::span<const Scalar> weight
 void evaluate_kernel(const CubicSpline& kernel, std::span<const Scalar> weights, std::size_t begin, std::size_t end,
                      Pairs& pairs);
 
-/// What a thread works with on the rows of a chunk.
-struct RowScratch {
-    std::vector<std::uint32_t> index;
-    std::vector<Scalar> distance_sq;
-};
 /// Writes all of the rows of `pairs` but their starts, which are known, and of `offset` and `index` the one that there
 /// is; returns the largest |j - i|: differences above 2^15 - 1 have not been written right.
 std::uint32_t write_self_pairs(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
-                               RowScratch& scratch, SelfPairs& pairs);
+                               SelfPairs& pairs);
 std::uint32_t write_self_pairs(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
-                               RowScratch& scratch, SelfPairs& pairs);
+                               SelfPairs& pairs);
 
 } // namespace flotsam::simd

@@ -3,6 +3,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 using namespace flotsam;
@@ -68,4 +69,51 @@ TEST_CASE("a point far away costs no memory and no neighbour is lost", "[sph]")
     search.find(CubicSpline(0.1, 3), grid, cells, points, true, {}, workers, pairs);
     CHECK(pairs.start[101] - pairs.start[100] == 1);
     CHECK(pairs.start[102] - pairs.start[101] == 1);
+}
+
+TEMPLATE_TEST_CASE("pairs of points whose numbers differ by more than 16 bits hold are kept by numbers", "[sph]",
+                   QuinticSpline, CubicSpline)
+{
+    // In the order of their cells, but for a point that is the last and lies beside the first.
+    constexpr std::uint32_t kCount = 40000;
+    std::vector<Vec4> points;
+    for (std::uint32_t i = 0; i + 1 < kCount; ++i) points.emplace_back(static_cast<Scalar>(i), 0, 0, 0);
+    points.emplace_back(Scalar(0.25), 0, 0, 0);
+    const TestType kernel(1.125, 3);
+    const Workers workers(2);
+    const auto find = [&](SelfPairs& pairs) {
+        const CellGrid grid = CellGrid::around(points, {}, 1.125, 100000);
+        CellLists lists;
+        lists.build(grid, points, workers);
+        NeighbourSearch().find(kernel, grid, lists, points, workers, pairs);
+        const auto row = [&](std::uint32_t i) {
+            std::vector<std::uint32_t> found;
+            for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
+                found.push_back(pairs.neighbour(i, k));
+                const Scalar r = (points[i] - points[found.back()]).norm();
+                CHECK(std::abs(pairs.slope(k) - kernel.gradient_factor(r)) <= Scalar(-0.501) * pairs.unit);
+            }
+            std::sort(found.begin(), found.end());
+            return found;
+        };
+        CHECK(row(5) == std::vector<std::uint32_t>{4, 6});
+        CHECK(row(20000) == std::vector<std::uint32_t>{19999, 20001});
+        return row(0);
+    };
+    SelfPairs pairs;
+    CHECK(find(pairs) == std::vector<std::uint32_t>{1, kCount - 1});
+    CHECK(pairs.is_far());
+    points.back().x() = static_cast<Scalar>(kCount - 1);
+    CHECK(find(pairs) == std::vector<std::uint32_t>{1});
+    CHECK_FALSE(pairs.is_far());
+}
+
+TEST_CASE("layers of cells lie across the longest axis of the points, rows along the next", "[sph]")
+{
+    const std::vector<Vec4> points = {Vec4(0, 0, 0, 0), Vec4(3, 9, 5, 0)};
+    const CellGrid grid = CellGrid::around(points, {}, 1.0, 1000);
+    const std::uint32_t home = grid.index_of({1, 1, 1});
+    CHECK(grid.index_of({1, 1, 2}) == home + 1);
+    CHECK(grid.index_of({2, 1, 1}) == home + static_cast<std::uint32_t>(grid.cells.z()));
+    CHECK(grid.index_of({1, 2, 1}) == home + static_cast<std::uint32_t>(grid.cells.z() * grid.cells.x()));
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <random>
 
 using namespace flotsam;
@@ -66,9 +67,10 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
 {
     // Row lengths of 0 to about 90, so that every rest of a register occurs.
     const std::size_t count = GENERATE(0u, 1u, 2u, 40u, 257u, 1200u);
+    const bool far = GENERATE(false, true); // neighbours by their numbers, or by differences
     const std::vector<std::string> sets = simd::instruction_sets();
     REQUIRE_FALSE(sets.empty());
-    CAPTURE(count);
+    CAPTURE(count, far);
     Points points(count);
     const TestType kernel(2.5 * Points::kSpacing, 3);
     const Workers workers(2);
@@ -83,6 +85,12 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
         SelfPairs pairs;
         NeighbourSearch().find(kernel, grid, lists, points.position, workers, pairs);
         REQUIRE(pairs.start == weighted_pairs.start);
+        REQUIRE_FALSE(pairs.is_far());
+        if (far) {
+            std::copy_n(weighted_pairs.index.begin(), pairs.size(), std::back_inserter(pairs.index));
+            pairs.index.resize(pairs.size() + SelfPairs::kSlack);
+            pairs.offset.clear();
+        }
         REQUIRE(pairs.rows() == count);
         const double volume = std::pow(Points::kSpacing, 3);
         simd::ViscousPull pull;
@@ -112,6 +120,9 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
             std::vector<std::uint32_t> expected, found;
             for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) found.push_back(pairs.neighbour(i, k));
             CHECK(std::equal(found.begin(), found.end(), weighted_pairs.index.begin() + pairs.start[i]));
+            std::vector<Scalar> slopes(count);
+            for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k)
+                slopes[pairs.neighbour(i, k)] = pairs.slope(k);
             double kernel_sum = 0.0, divergence = 0.0, square = 0.0, size = 0.0, pull_size = 0.0;
             Vec3d gradient = Vec3d::Zero(), plain = Vec3d::Zero(), pulled = Vec3d::Zero();
             Mat3 velocity = Mat3::Zero(), shape = Mat3::Zero(), virial = Mat3::Zero(), weighted = Mat3::Zero();
@@ -130,7 +141,9 @@ TEMPLATE_TEST_CASE("every instruction set finds the pairs and sums of plain loop
                 expected.push_back(j);
                 const Vec3d x = wide(offset), v = wide(points.velocity[i]) - wide(points.velocity[j]);
                 const Scalar r = offset.norm();
-                const Vec3d g = static_cast<double>(kernel.gradient_factor(r)) * x;
+                CHECK(std::abs(slopes[j] - kernel.gradient_factor(r)) <=
+                      Scalar(-0.6) * pairs.unit); // half, and rounding
+                const Vec3d g = static_cast<double>(slopes[j]) * x;
                 kernel_sum += static_cast<double>(points.weights[j]) * static_cast<double>(kernel.value(r));
                 gradient += static_cast<double>(at[j][3]) * g;
                 plain += g;
