@@ -83,6 +83,47 @@ Builder ring_buoy()
     return ring;
 }
 
+/// An open boat of plates, flat-bottomed, its sides and ends raked. The origin is in the middle, under the bottom.
+Builder punt()
+{
+    constexpr double height = 0.14, plate = 0.004;
+    constexpr std::array<double, 2> at_bottom = {0.17, 0.10}, at_rim = {0.25, 0.14}; // half lengths, half breadths
+    const int along = pieces(2.0 * at_bottom[0]), across = pieces(2.0 * at_bottom[1]), up = pieces(height);
+    Builder boat;
+    // A point of the outside at a height, or of the inside, which is a plate's thickness away.
+    const auto point = [&](double z, double inset, double s, double t) {
+        const auto half = [&](int k) { return at_bottom[k] + (at_rim[k] - at_bottom[k]) * z / height - inset; };
+        return boat.vertex({(2.0 * s - 1.0) * half(0), (2.0 * t - 1.0) * half(1), z});
+    };
+    const auto ring = [&](double z, double inset) {
+        Row row;
+        for (int k = 0; k < along; ++k) row.push_back(point(z, inset, static_cast<double>(k) / along, 0.0));
+        for (int k = 0; k < across; ++k) row.push_back(point(z, inset, 1.0, static_cast<double>(k) / across));
+        for (int k = along; k > 0; --k) row.push_back(point(z, inset, static_cast<double>(k) / along, 1.0));
+        for (int k = across; k > 0; --k) row.push_back(point(z, inset, 0.0, static_cast<double>(k) / across));
+        row.push_back(row.front());
+        return row;
+    };
+    const auto bottom = [&](double z, double inset, bool faces_up) {
+        for (int j = 0; j < across; ++j) {
+            Row low, high;
+            for (int k = 0; k <= along; ++k) {
+                const double s = static_cast<double>(k) / along;
+                low.push_back(point(z, inset, s, static_cast<double>(j) / across));
+                high.push_back(point(z, inset, s, static_cast<double>(j + 1) / across));
+            }
+            faces_up ? boat.strip(high, low) : boat.strip(low, high);
+        }
+    };
+    bottom(0.0, 0.0, false);
+    for (int k = 0; k < up; ++k) boat.strip(ring(height * (k + 1) / up, 0.0), ring(height * k / up, 0.0));
+    boat.strip(ring(height, plate), ring(height, 0.0));
+    const auto inside = [&](int k) { return ring(plate + (height - plate) * k / up, plate); };
+    for (int k = up; k > 0; --k) boat.strip(inside(k - 1), inside(k));
+    bottom(plate, plate, true);
+    return boat;
+}
+
 /// A solid of revolution about z. `profile`: (radius, z) from the lowest point of the axis to the highest.
 Builder revolved(const std::vector<std::array<double, 2>>& profile)
 {
@@ -183,6 +224,7 @@ try {
     const std::filesystem::path folder = argument_count > 1 ? arguments[1] : ".";
     std::filesystem::create_directories(folder);
     meshes::write_obj(folder / "hull.obj", wigley_hull().closed("hull"));
+    meshes::write_obj(folder / "punt.obj", punt().closed("punt"));
     meshes::write_stl(folder / "ring_buoy.stl", ring_buoy().closed("ring_buoy"));
     meshes::write_ply(folder / "channel_marker.ply", channel_marker().closed("channel_marker"));
     meshes::write_glb(folder / "crate.glb", cargo_crate().closed("crate"));

@@ -7,6 +7,7 @@
 #include "flotsam/geometry/shapes.hpp"
 #include "flotsam/world/fluid_world.hpp"
 #include "validation/righting_arms.hpp"
+#include "validation/vessel.hpp"
 
 #include <algorithm>
 #include <array>
@@ -276,6 +277,7 @@ constexpr std::array kCases = {
     Case{"still_water", "statics", "Water at rest in a tank", 25.0, 40.0, run_still_water},
     Case{"drafts_2d", "statics", "Drafts of a box and a disc in two dimensions", 60.0, 500.0, run_drafts_2d},
     Case{"drafts_3d", "statics", "Drafts of a box, a sphere and a cylinder", 0.0, 1100.0, run_drafts_3d},
+    Case{"vessel", "statics", "Drafts of an open boat of sheet metal", 40.0, 150.0, run_vessel},
     Case{"square_log", "statics", "The angle at which a square log floats", 40.0, 200.0, run_square_log},
     Case{"stability", "statics", "Which boxes float upright", 30.0, 40.0, run_stability},
     Case{"righting_arm", "statics", "Righting arms of boxes held at a heel", 40.0, 200.0, run_righting_arm},

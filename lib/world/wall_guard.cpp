@@ -45,9 +45,10 @@ GuardReport WallGuard::stop(std::span<const Vec4> from, std::span<Vec4> to, std:
         out.report = {};
         out.reactions.clear();
         if (out.reactions.capacity() == 0) out.reactions.reserve(64); // few particles of a chunk are stopped at once
+        find_near(from.subspan(begin, end - begin), to.subspan(begin, end - begin), motion, out.near);
         for (std::size_t i = begin; i < end; ++i) {
             if (!to[i].allFinite()) continue; // counted by the step as physics in trouble
-            if (!may_hit(from[i].head<3>().cast<double>(), to[i].head<3>().cast<double>(), motion)) continue;
+            if (!may_hit(from[i].head<3>().cast<double>(), to[i].head<3>().cast<double>(), motion, out.near)) continue;
             stop_one(from[i], to[i], velocity[i], motion, particle_mass, out);
         }
     });
@@ -70,10 +71,35 @@ bool WallGuard::passes_far(std::size_t k, const Vec3d& from, const Vec3d& to, co
     return length_a + b.norm() - 2.0 * reach_[k] > length + 2.0 * clearance_;
 }
 
-bool WallGuard::may_hit(const Vec3d& from, const Vec3d& to, std::span<const GuardedMotion> motion) const
+/// The surfaces that passes_far does not rule out for all of a chunk's particles, which are near each other.
+void WallGuard::find_near(std::span<const Vec4> from, std::span<const Vec4> to, std::span<const GuardedMotion> motion,
+                          std::vector<std::size_t>& near) const
 {
+    near.clear();
+    near.reserve(surfaces_.size());
+    Eigen::AlignedBox3d box;
+    double way = 0.0;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        if (!to[i].allFinite()) continue;
+        box.extend(Vec3d(from[i].head<3>().cast<double>()));
+        way = std::max(way, static_cast<double>((to[i] - from[i]).head<3>().norm()));
+    }
+    if (box.isEmpty()) return;
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-        if (!bounds_[k] || passes_far(k, from, to, motion[k])) continue;
+        if (!bounds_[k]) continue;
+        const Vec3d &before = motion[k].before.position, &after = motion[k].after.position;
+        const double nearest = box.exteriorDistance(before) + std::max(0.0, box.exteriorDistance(after) - way);
+        const double farthest = (before - box.center()).norm() + 0.5 * box.diagonal().norm();
+        const double length = way + (after - before).norm() + turn_[k] * farthest;
+        if (nearest - 2.0 * reach_[k] <= length + 2.0 * clearance_) near.push_back(k);
+    }
+}
+
+bool WallGuard::may_hit(const Vec3d& from, const Vec3d& to, std::span<const GuardedMotion> motion,
+                        std::span<const std::size_t> near) const
+{
+    for (const std::size_t k : near) {
+        if (passes_far(k, from, to, motion[k])) continue;
         const Vec3d a = motion[k].before.to_body(from);
         const Vec3d b = motion[k].after.to_body(to);
         // A path of length L that passes the surface has distance(a) + distance(b) <= L.

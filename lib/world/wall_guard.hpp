@@ -53,6 +53,7 @@ class WallGuard {
     struct Stopped {
         GuardReport report;
         std::vector<Reaction> reactions;
+        std::vector<std::size_t> near; ///< surfaces that a particle of the chunk might meet
     };
     struct Hit {
         std::size_t surface;
@@ -60,7 +61,10 @@ class WallGuard {
         Vec3d normal; ///< world frame, against the motion
     };
     [[nodiscard]] bool passes_far(std::size_t k, const Vec3d& from, const Vec3d& to, const GuardedMotion& motion) const;
-    [[nodiscard]] bool may_hit(const Vec3d& from, const Vec3d& to, std::span<const GuardedMotion> motion) const;
+    void find_near(std::span<const Vec4> from, std::span<const Vec4> to, std::span<const GuardedMotion> motion,
+                   std::vector<std::size_t>& near) const;
+    [[nodiscard]] bool may_hit(const Vec3d& from, const Vec3d& to, std::span<const GuardedMotion> motion,
+                               std::span<const std::size_t> near) const;
     [[nodiscard]] std::optional<Hit> first_hit(const Vec3d& from, const Vec3d& to,
                                                std::span<const GuardedMotion> motion) const;
     void stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<const GuardedMotion> motion,
