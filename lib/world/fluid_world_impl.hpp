@@ -46,6 +46,7 @@ struct BodySurface {
     std::string name;  ///< in notes
     std::unique_ptr<SurfaceQuery> query;
     std::unique_ptr<Sheet> sheet;  ///< null: it is none
+    double thin_fraction = 0.0;    ///< of its surface: sampled in one layer in its middle
     bool is_changed = false;       ///< added or reshaped since the last step
     std::optional<Pose> last_pose; ///< at the end of the last step, as the fluid had it
 
@@ -194,6 +195,7 @@ struct FluidWorld::Impl {
     // sample_surfaces.cpp
     void sample_surfaces();
     void sample_body(std::size_t k);
+    bool copy_samples_of_twin(std::size_t k);
     void prepare_wall_samples(std::size_t k);
     void find_reached_parts(const Wall& wall);
     void sample_walls_in_reach();

@@ -97,12 +97,46 @@ void FluidWorld::Impl::note_thin(const std::string& name, double fraction)
 
 void FluidWorld::Impl::sample_body(std::size_t k)
 {
-    if (!bodies[k].query) return; // removed
-    const SurfaceSampleSettings sampling = sample_settings(SurfaceSampleSettings::Solid::inside);
-    const SurfaceSamples samples = sample_surface(*bodies[k].query, sampling, workers);
-    bodies[k].sheet = sheet_of(*bodies[k].query, sampling, samples);
-    add_samples(walls.size() + k, samples, {});
-    note_thin(bodies[k].name, samples.thin_fraction);
+    BodySurface& body = bodies[k];
+    if (!body.query) return; // removed
+    if (!copy_samples_of_twin(k)) {
+        const SurfaceSampleSettings sampling = sample_settings(SurfaceSampleSettings::Solid::inside);
+        const SurfaceSamples samples = sample_surface(*body.query, sampling, workers);
+        body.sheet = sheet_of(*body.query, sampling, samples);
+        body.thin_fraction = samples.thin_fraction;
+        add_samples(walls.size() + k, samples, {});
+    }
+    note_thin(body.name, body.thin_fraction);
+}
+
+/// Bodies of one shape come by the dozen, and have the same samples. False if there is no such body, or it is a sheet.
+bool FluidWorld::Impl::copy_samples_of_twin(std::size_t k)
+{
+    const TriangleMesh& mesh = bodies[k].mesh;
+    const auto is_twin = [&](const BodySurface& other) {
+        return &other != &bodies[k] && other.query && !other.is_changed && !other.sheet &&
+               other.mesh.triangles == mesh.triangles && other.mesh.vertices == mesh.vertices;
+    };
+    const auto twin = std::find_if(bodies.begin(), bodies.end(), is_twin);
+    if (twin == bodies.end()) return false;
+    const auto owner = static_cast<std::int32_t>(walls.size() + static_cast<std::size_t>(twin - bodies.begin()));
+    const std::size_t all = boundary.size();
+    for (std::size_t b = 0; b < all; ++b) {
+        if (boundary.owner[b] != owner) continue;
+        boundary.position.push_back(boundary.position[b]);
+        boundary.volume.push_back(boundary.volume[b]);
+        boundary.velocity.push_back(Vec4::Zero());
+        boundary.owner.push_back(static_cast<std::int32_t>(walls.size() + k));
+        boundary.position_body.push_back(boundary.position_body[b]);
+    }
+    if (boundary.size() == all) return false; // it has yet to get its own
+    if (!boundary.normal.empty()) {
+        boundary.normal.resize(boundary.size(), Vec4::Zero());
+        boundary.normal_body.resize(boundary.size(), Vec4::Zero());
+    }
+    bodies[k].sheet.reset();
+    bodies[k].thin_fraction = twin->thin_fraction;
+    return true;
 }
 
 void FluidWorld::Impl::sample_surfaces()

@@ -471,3 +471,57 @@ TEST_CASE("water that falls out over an open side is removed and booked, and hol
     for (const Vec4& p : fluid.fluid().position) CHECK(p.z() > Scalar(-0.25));
     CHECK(fluid.allowed_time_step() > s.cfl * kSpacing / 4.0);
 }
+
+TEST_CASE("bodies of one shape have the same samples, also those that come later or change", "[world]")
+{
+    FluidWorldSettings settings;
+    settings.particle_spacing = kSpacing;
+    settings.threads = 1;
+    FluidWorld fluid(settings);
+    fluid.add_box_wall({Vec3d::Zero(), Vec3d(0.6, 0.3, 0.6)}, {"+z"});
+    fluid.add_block({Vec3d::Zero(), Vec3d(0.6, 0.3, 0.1)});
+    const TriangleMesh ball = tessellate(SphereShape{0.05}, kSpacing), box = tessellate(BoxShape{{0.1, 0.1, 0.1}}, 0.1);
+    std::vector<Pose> poses;
+    const auto add = [&](const TriangleMesh& mesh) {
+        const double turn = 0.3 * static_cast<double>(poses.size());
+        poses.push_back({Vec3d(0.1 + 0.15 * static_cast<double>(poses.size()), 0.15, 0.3),
+                         Quatd(Eigen::AngleAxisd(turn, Vec3d::UnitX()))});
+        return fluid.add_body(mesh);
+    };
+    const auto step = [&] {
+        HeldBodies bodies(poses);
+        fluid.step(1e-3, bodies);
+    };
+    /// In the body's frame, and where they are.
+    const auto samples_of = [&](int body, std::vector<Scalar>& volumes) {
+        std::vector<Vec3d> positions;
+        const BoundaryState& boundary = fluid.boundary();
+        for (std::size_t b = 0; b < boundary.size(); ++b) {
+            if (boundary.owner[b] != 1 + body) continue; // owner 0: the tank
+            positions.push_back(boundary.position_body[b]);
+            volumes.push_back(boundary.volume[b]);
+            const Vec3d world = poses[static_cast<std::size_t>(body)].to_world(boundary.position_body[b]);
+            CHECK((boundary.position[b].head<3>().cast<double>() - world).norm() < 1e-6);
+        }
+        return positions;
+    };
+    const auto have_same = [&](int a, int b) {
+        std::vector<Scalar> volumes_a, volumes_b;
+        const std::vector<Vec3d> of_a = samples_of(a, volumes_a), of_b = samples_of(b, volumes_b);
+        return !of_a.empty() && of_a == of_b && volumes_a == volumes_b;
+    };
+    const int first = add(ball), second = add(ball), other = add(box);
+    step();
+    CHECK(have_same(first, second));
+    CHECK_FALSE(have_same(first, other));
+    const int late = add(box);
+    fluid.reshape_body(second, box);
+    step();
+    CHECK(have_same(late, other));
+    CHECK(have_same(second, other));
+    CHECK_FALSE(have_same(first, second));
+    fluid.reshape_body(other, ball); // whose twin is another now
+    step();
+    CHECK(have_same(other, first));
+    CHECK(have_same(late, second));
+}
