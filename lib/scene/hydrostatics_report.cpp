@@ -1,8 +1,10 @@
 #include "flotsam/scene/hydrostatics_report.hpp"
 
 #include "flotsam/core/contracts.hpp"
+#include "flotsam/geometry/hydrostatics.hpp"
 #include "flotsam/geometry/mass_properties.hpp"
 #include "flotsam/version.hpp"
+#include "geometry/wetted_surface.hpp"
 #include "scene/solid_file.hpp"
 
 #include <cmath>
@@ -38,12 +40,25 @@ std::vector<double> radians(const HeelRange& range)
     return angles;
 }
 
+/// As she is turned in the file, her hollow dry; nothing for what has none or sinks.
+std::optional<double> draft_as_vessel(const FloatingBody& body)
+{
+    const double low = lowest_point(body.mesh, Pose{});
+    const auto draft = vessel_draft(body.mesh, Pose{}, low, body.mass / body.water_density);
+    if (!draft || !WettedSurface(body.mesh, Pose{}).has_basin(low + *draft)) return std::nullopt;
+    return draft;
+}
+
 [[noreturn]] void refuse_as_sinking(const HydrostaticsRequest& request, const FloatingBody& body, double volume)
 {
+    const auto as_vessel = draft_as_vessel(body);
     std::ostringstream sentence;
     sentence << request.mesh.string() << ": it sinks: its " << body.mass << " kg in " << volume << " m^3 are "
              << body.mass / volume << " kg/m^3, and the water has " << body.water_density
              << " kg/m^3; what floats must be lighter";
+    if (as_vessel)
+        sentence << " (turned as in the file and with its hollow dry it floats, with a draft of " << *as_vessel
+                 << " m: a run has that)";
     throw InputError(sentence.str());
 }
 
@@ -92,6 +107,12 @@ HydrostaticsReport report_hydrostatics(const HydrostaticsRequest& request)
     report.water_density = body.water_density;
     report.center_of_mass = body.center_of_mass;
     report.as_modelled = *as_modelled;
+    if (const auto as_vessel = draft_as_vessel(body)) {
+        std::ostringstream note;
+        note << "it has a hollow: dry, and turned as in the file, its draft is " << *as_vessel
+             << " m; what follows is with the hollow open to the water";
+        report.notes.push_back(note.str());
+    }
     report.stable = *stable_poses(body);
     if (request.heel) report.righting_arms = righting_arms(body, Quatd::Identity(), radians(*request.heel));
     return report;

@@ -140,7 +140,7 @@ void print(const std::string& name, KernelKind kind, const std::string& set, int
         threads, at(0.5), at(0.1), at(0.9), 1e6 * all / count / n, share(row.stages.neighbours),
         share(row.stages.density), share(row.stages.forces), share(row.stages.pressure), share(row.stages.advance),
         row.iterations, row.products, 1e3 * row.simulated / count, row.simulated / all, 1e9 * product / pairs,
-        2.0 * 8.0 * pairs / product / kGiga, row.memory / n, row.preparation);
+        2.0 * 4.0 * pairs / product / kGiga, row.memory / n, row.preparation);
     std::fflush(stdout);
 }
 

@@ -64,6 +64,11 @@ TEST_CASE("a box and a disc float at their drafts, at two resolutions", "[valida
     check_case("drafts_2d");
 }
 
+TEST_CASE("a boat of sheet metal floats on her hollow", "[validation][cases]")
+{
+    check_picture(check_case("vessel"));
+}
+
 TEST_CASE("square logs tilt as they should", "[validation][cases]")
 {
     check_picture(check_case("square_log"));

@@ -35,7 +35,7 @@ struct HydrostaticsRequest {
 struct HydrostaticsReport {
     std::string version; ///< of flotsam
     std::filesystem::path mesh;
-    std::vector<std::string> notes; ///< what was repaired in the mesh, a sentence each
+    std::vector<std::string> notes; ///< what was repaired in the mesh, and of its hollow; a sentence each
     std::size_t triangles = 0;
     double volume = 0.0;                  ///< [m^3]
     double mass = 0.0;                    ///< [kg]

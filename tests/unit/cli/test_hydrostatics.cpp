@@ -149,6 +149,22 @@ TEST_CASE("bad input of hydrostatics is one sentence that names option and limit
     CHECK(directory.read("full/thesis.tex") == "years of work");
 }
 
+TEST_CASE("hydrostatics of an open boat name the draft with her hollow dry", "[cli][hydrostatics]")
+{
+    const TemporaryDirectory directory("flotsam_cli_hydrostatics_boat");
+    const std::string punt = std::string("hydrostatics ") + FLOTSAM_DATA_DIR + "/meshes/punt.obj --out out ";
+    // Steel of 4 mm: her bottom is 0.34 x 0.2 m, 0.5 x 0.28 m at the rim, 0.14 m up. 6 kg at 0.0713 m, by the integral
+    // of length times breadth over the height.
+    const Outcome heavy = run_program(directory, punt + "--mass 6");
+    CHECK(heavy.code == 2);
+    CHECK(contains(heavy.err, "it sinks"));
+    CHECK(contains(heavy.err, "with its hollow dry it floats, with a draft of 0.0712"));
+    const Outcome light = run_program(directory, punt + "--density 500");
+    CHECK(light.code == 0);
+    CHECK(contains(light.out, "note: it has a hollow: dry, and turned as in the file, its draft is 0.0071"));
+    CHECK_FALSE(contains(run_program(directory, punt + "--mass 30").err, "hollow")); // founders
+}
+
 TEST_CASE("without gnuplot everything else is there and one sentence names the package", "[cli][hydrostatics]")
 {
     const TemporaryDirectory directory("flotsam_cli_hydrostatics_gnuplot");
