@@ -126,39 +126,38 @@ HWY_INLINE V4 broadcast(const Vec4& p)
     return {set(c[0]), set(c[1]), set(c[2]), set(c[3])};
 }
 
-/// Calls visit(neighbours, slope) for each group of pairs of row i. Lanes behind the row's end have slope 0 and some
-/// point for a neighbour.
+/// Calls visit(neighbours, slope) for each group of pairs of row i. Lanes without a pair of their own have slope 0 and
+/// some point for a neighbour.
 template <class Visit>
 HWY_INLINE void for_row(const SelfPairs& pairs, std::size_t i, Visit&& visit)
 {
-    const SignedInts ints;
+    const Floats d;
     const Shorts shorts;
-    const UnsignedShorts unsigned_shorts;
     const V unit = set(pairs.unit);
-    const std::uint32_t last = pairs.start[i + 1];
+    const std::uint32_t first = pairs.start[i], last = pairs.start[i + 1];
     const std::uint16_t* parts = pairs.parts.data();
-    const auto slope_of = [&](auto of_lanes) FLOTSAM_INLINE {
-        return hn::Mul(unit, hn::ConvertTo(Floats(), hn::PromoteTo(ints, of_lanes)));
+    const auto slope_at = [&](std::uint32_t k) FLOTSAM_INLINE {
+        return hn::Mul(unit, hn::ConvertTo(d, hn::PromoteTo(SignedInts(), hn::LoadU(UnsignedShorts(), parts + k))));
     };
-    const auto slope_of_rest = [&](std::uint32_t k) FLOTSAM_INLINE {
-        const auto in_row = hn::FirstN(unsigned_shorts, last - k);
-        return slope_of(hn::IfThenElseZero(in_row, hn::LoadU(unsigned_shorts, parts + k)));
-    };
-    std::uint32_t k = pairs.start[i];
+    std::uint32_t k = first;
     if (pairs.is_far()) {
         const std::uint32_t* index = pairs.index.data();
-        for (; k + kLanes <= last; k += kLanes)
-            visit(FarNeighbours{index + k}, slope_of(hn::LoadU(unsigned_shorts, parts + k)));
-        if (k < last) visit(FarNeighbours{index + k}, slope_of_rest(k));
+        for (; k + kLanes <= last; k += kLanes) visit(FarNeighbours{index + k}, slope_at(k));
+        if (k < last) visit(FarNeighbours{index + k}, hn::IfThenElseZero(hn::FirstN(d, last - k), slope_at(k)));
         return;
     }
+    // What follows the row are offsets from other points: its end is taken with what is before it, or by itself.
     const std::int16_t* offset = pairs.offset.data();
-    for (; k + kLanes <= last; k += kLanes)
-        visit(NearNeighbours{i, offset + k}, slope_of(hn::LoadU(unsigned_shorts, parts + k)));
+    for (; k + kLanes <= last; k += kLanes) visit(NearNeighbours{i, offset + k}, slope_at(k));
     if (k == last) return;
-    HWY_ALIGN std::int16_t rest[kLanes]; // offsets of the next rows mean other points
+    if (first + kLanes <= last) {
+        const std::uint32_t from = last - static_cast<std::uint32_t>(kLanes);
+        visit(NearNeighbours{i, offset + from}, hn::IfThenZeroElse(hn::FirstN(d, k - from), slope_at(from)));
+        return;
+    }
+    HWY_ALIGN std::int16_t rest[kLanes];
     hn::Store(hn::IfThenElseZero(hn::FirstN(shorts, last - k), hn::LoadU(shorts, offset + k)), shorts, rest);
-    visit(NearNeighbours{i, rest}, slope_of_rest(k));
+    visit(NearNeighbours{i, rest}, hn::IfThenElseZero(hn::FirstN(d, last - k), slope_at(k)));
 }
 
 HWY_INLINE void store_vec3(const V3& v, Vec4* out)
