@@ -10,10 +10,11 @@
 /// the best one that the processor has is taken at run time. Each works on the rows [begin, end), on one thread; sums
 /// over the neighbours of a particle are taken in a fixed order that depends on the instruction set alone.
 ///
-/// A neighbour's values are loaded as float4 and transposed in registers, and the slope of a pair is stored: eight
-/// bytes a pair. Nanoseconds a pair of sum_gradients and sum_divergences with 76 neighbours, AVX2, one core: 0.5 and
-/// 0.7; with stored gradients (20 bytes a pair) 0.9 and 1.0, with slopes computed anew 1.1 and 1.2, and those with
-/// gathers 4.
+/// A neighbour's values are loaded as float4 and transposed in registers; SelfPairs has four bytes a pair, the slope
+/// among them. With eight, a product of sum_gradients and sum_divergences took 12 % more of quintic pairs that do not
+/// fit into the caches. Nanoseconds a pair of the two with 76 neighbours, AVX2, one core, as it was then: 0.5 and 0.7;
+/// with stored gradients (20 bytes a pair) 0.9 and 1.0, with slopes computed anew 1.1 and 1.2, and those with gathers
+/// 4.
 namespace flotsam::simd {
 
 /// out_i = sum_j w_j grad W_ij, out.w = 0; `at`: x, y, z and w.
