@@ -108,6 +108,34 @@ TEMPLATE_TEST_CASE("pairs of points whose numbers differ by more than 16 bits ho
     CHECK_FALSE(pairs.is_far());
 }
 
+TEST_CASE("water squeezed into a corner has rows of many hundred neighbours", "[sph]")
+{
+    const std::size_t count = GENERATE(512u, 513u, 514u, 1400u);
+    const std::vector<Vec4> points = random_points(count, 5, 0.05);
+    const Workers workers(2);
+    const CubicSpline kernel(0.15, 3);
+    const CellGrid grid = CellGrid::around(points, {}, 0.15, 1000);
+    CellLists lists;
+    lists.build(grid, points, workers);
+    SelfPairs pairs;
+    NeighbourSearch().find(kernel, grid, lists, points, workers, pairs);
+    REQUIRE(pairs.size() == count * (count - 1));
+    for (std::size_t i = 0; i < count; i += 100) {
+        std::vector<char> is_found(count);
+        double sum = 0.0;
+        for (std::uint32_t k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
+            const std::uint32_t j = pairs.neighbour(i, k);
+            is_found[j] = 1;
+            const Scalar r = (points[i] - points[j]).norm();
+            CHECK(std::abs(pairs.slope(k) - kernel.gradient_factor(r)) <= Scalar(-0.6) * pairs.unit);
+            sum += static_cast<double>(kernel.value(r));
+        }
+        CHECK(std::count(is_found.begin(), is_found.end(), 1) == static_cast<std::ptrdiff_t>(count) - 1);
+        CHECK(is_found[i] == 0);
+        CHECK(static_cast<double>(pairs.kernel_sum[i]) == Approx(sum).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("layers of cells lie across the longest axis of the points, rows along the next", "[sph]")
 {
     const std::vector<Vec4> points = {Vec4(0, 0, 0, 0), Vec4(3, 9, 5, 0)};
