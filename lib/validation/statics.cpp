@@ -107,9 +107,10 @@ double folded(double angle)
     return std::min(rest, 90.0 - rest);
 }
 
-/// A box in 2-D, let go at its upright draft turned by 7 degrees: the mean of its angle over the last quarter.
+/// A box in 2-D, let go at its upright draft, turned a little: the mean of its angle over the last quarter.
 struct FloatingBox {
     double width = 0.2, height = 0.2, ratio = 0.5;
+    double turned = 7.0; ///< [deg]
     bool has_picture = false;
 };
 
@@ -125,7 +126,7 @@ double final_angle(const FloatingBox& box, double spacing, double seconds, const
     std::ostringstream text;
     text << R"({"name": "box", "shape": {"box": [)" << box.width << ", " << box.height << R"(]}, "density": )"
          << kWater * box.ratio << R"(, "position": [)" << 0.5 * tank.width << ", "
-         << tank.level + (0.5 - box.ratio) * box.height << R"(], "rotation_deg": [0, 7, 0]})";
+         << tank.level + (0.5 - box.ratio) * box.height << R"(], "rotation_deg": [0, )" << box.turned << R"(, 0]})";
     tank.bodies = text.str();
     run = run_recorded(tank.text(), options);
     const std::vector<double>& angle = run.column("box.ry");
@@ -155,7 +156,8 @@ void run_square_log(const ValidationOptions& options, ValidationResult& result)
     struct Point {
         double ratio, tolerance; // [deg]
     };
-    // Near 0.25 and 0.75 a hundredth of the density is worth several degrees.
+    // Near 0.25 and 0.75 a hundredth of the density is worth several degrees: where in the packing's hold the log stops
+    // is chance (27 to 36 degrees at 0.75, six starts), so that the mean of three starts is taken.
     constexpr std::array points = {Point{0.15, 4.0}, Point{0.25, 8.0}, Point{0.5, 3.0}, Point{0.75, 8.0},
                                    Point{0.85, 4.0}};
     constexpr double kEdge = 0.2;
@@ -166,9 +168,14 @@ void run_square_log(const ValidationOptions& options, ValidationResult& result)
         ValidationCurve curve{label.str(), ValidationCurve::Kind::measured, {}, {}};
         for (const Point& point : points) {
             RecordedRun run;
-            const bool has_picture = point.ratio == 0.5;
-            const double angle =
-                folded(final_angle({kEdge, kEdge, point.ratio, has_picture}, kEdge / resolution, 6.0, options, run));
+            const bool has_picture = point.ratio == 0.5, is_steep = std::abs(point.ratio - 0.5) == 0.25;
+            const std::vector<double> starts = is_steep ? std::vector{7.0, 8.0, 9.0} : std::vector{7.0};
+            double angle = 0.0;
+            for (const double turned : starts) {
+                const FloatingBox log{kEdge, kEdge, point.ratio, turned, has_picture};
+                angle += folded(final_angle(log, kEdge / resolution, 6.0, options, run)) /
+                         static_cast<double>(starts.size());
+            }
             if (has_picture) result.pictures = {{at_ratio("the log at rest", point.ratio), run.png}};
             result.checks.push_back({at_ratio("angle of rest", point.ratio), "deg", resolution, angle,
                                      exact_log_angle(point.ratio), point.tolerance, std::nullopt,
@@ -276,7 +283,7 @@ void run_still_water(const ValidationOptions& options, ValidationResult& result)
 constexpr std::array kCases = {
     Case{"still_water", "statics", "Water at rest in a tank", 25.0, 40.0, run_still_water},
     Case{"drafts_2d", "statics", "Drafts of a box and a disc in two dimensions", 60.0, 500.0, run_drafts_2d},
-    Case{"drafts_3d", "statics", "Drafts of a box, a sphere and a cylinder", 0.0, 1100.0, run_drafts_3d},
+    Case{"drafts_3d", "statics", "Drafts of a box, a sphere and a cylinder", 0.0, 900.0, run_drafts_3d},
     Case{"vessel", "statics", "Drafts of an open boat of sheet metal", 40.0, 150.0, run_vessel},
     Case{"square_log", "statics", "The angle at which a square log floats", 40.0, 200.0, run_square_log},
     Case{"stability", "statics", "Which boxes float upright", 30.0, 40.0, run_stability},
