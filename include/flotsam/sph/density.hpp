@@ -10,8 +10,8 @@ namespace flotsam {
 
 /// rho_i = m (W(0) + sum_j W_ij) + rho0 sum_b V_b W_ib.
 ///
-/// **Source:** Akinci et al. 2012, eq. 6. `fluid_pairs` and `boundary_pairs` have a row per fluid particle, the latter
-/// with V_b [m^3] as the weights of its kernel sums; `density` [kg/m^3] is written.
+/// **Source:** Akinci et al. 2012, eq. 6. `fluid_sums` and `boundary_sums` are the kernel sums of the pairs, one per
+/// fluid particle, the latter with V_b [m^3] as weights; `density` [kg/m^3] is written.
 void compute_density(std::span<const Scalar> fluid_sums, std::span<const Scalar> boundary_sums, Scalar kernel_at_zero,
                      double particle_mass, double rest_density, const Workers& workers, std::span<Scalar> density);
 
