@@ -72,6 +72,21 @@ struct NearNeighbours {
     }
 };
 
+#if HWY_TARGET != HWY_SCALAR
+/// The points of pair `lane` (0 to 3) in four lanes, and of the pair four lanes on in the other four.
+template <class Neighbours>
+HWY_INLINE V load_points(const Vec4* points, const Neighbours& neighbours, int lane)
+{
+    const hn::FixedTag<float, 4> four;
+    const auto low = hn::Load(four, neighbours.of(points, lane));
+#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_EMU128
+    return low;
+#else
+    return hn::Combine(Floats(), hn::Load(four, neighbours.of(points, lane + 4)), low);
+#endif
+}
+#endif
+
 /// The points that the lanes' neighbours are, transposed.
 template <class Neighbours>
 HWY_INLINE V4 load_transposed(const Vec4* points, const Neighbours& neighbours)
@@ -81,16 +96,8 @@ HWY_INLINE V4 load_transposed(const Vec4* points, const Neighbours& neighbours)
     return {set(p[0]), set(p[1]), set(p[2]), set(p[3])};
 #else
     const Floats d;
-    const hn::FixedTag<float, 4> four;
-    const auto load = [&](int lane) FLOTSAM_INLINE {
-        const auto low = hn::Load(four, neighbours.of(points, lane));
-#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_EMU128
-        return low;
-#else
-        return hn::Combine(d, hn::Load(four, neighbours.of(points, lane + 4)), low);
-#endif
-    };
-    const V a = load(0), b = load(1), c = load(2), e = load(3);
+    const V a = load_points(points, neighbours, 0), b = load_points(points, neighbours, 1),
+            c = load_points(points, neighbours, 2), e = load_points(points, neighbours, 3);
     const hn::RepartitionToWide<Floats> wide;
     const auto ab_low = hn::BitCast(wide, hn::InterleaveLower(d, a, b));
     const auto ab_high = hn::BitCast(wide, hn::InterleaveUpper(d, a, b));
@@ -159,6 +166,110 @@ HWY_INLINE void for_row(const SelfPairs& pairs, std::size_t i, Visit&& visit)
     hn::Store(hn::IfThenElseZero(hn::FirstN(shorts, last - k), hn::LoadU(shorts, offset + k)), shorts, rest);
     visit(NearNeighbours{i, rest}, hn::IfThenElseZero(hn::FirstN(d, last - k), slope_at(k)));
 }
+
+/// sum_j slope_j w_j (x_i - x_j), without transposing: it needs no more than products of whole points.
+class GradientSum {
+  public:
+#if HWY_TARGET == HWY_SCALAR
+    HWY_INLINE explicit GradientSum(const Vec4& point)
+        : own_(broadcast(point)), sum_{hn::Zero(Floats()), hn::Zero(Floats()), hn::Zero(Floats())}
+    {
+    }
+    template <class Neighbours>
+    HWY_INLINE void add(const Vec4* points, const Neighbours& neighbours, V slope)
+    {
+        const V4 other = load_transposed(points, neighbours);
+        const V3 x = difference(own_, other);
+        const V factor = hn::Mul(slope, other.w);
+        sum_ = {hn::MulAdd(factor, x.x, sum_.x), hn::MulAdd(factor, x.y, sum_.y), hn::MulAdd(factor, x.z, sum_.z)};
+    }
+    HWY_INLINE void store(Vec4* out) const
+    {
+        *out = Vec4(hn::GetLane(sum_.x), hn::GetLane(sum_.y), hn::GetLane(sum_.z), 0);
+    }
+
+  private:
+    V4 own_;
+    V3 sum_;
+#else
+    HWY_INLINE explicit GradientSum(const Vec4& point)
+        : own_(hn::LoadDup128(Floats(), reinterpret_cast<const float*>(&point))), even_(hn::Zero(Floats())), odd_(even_)
+    {
+    }
+    template <class Neighbours>
+    HWY_INLINE void add(const Vec4* points, const Neighbours& neighbours, V slope)
+    {
+        const auto added = [&](V other, V of_pair, V sum) FLOTSAM_INLINE {
+            return hn::MulAdd(hn::Mul(of_pair, hn::Broadcast<3>(other)), hn::Sub(own_, other), sum);
+        };
+        even_ = added(load_points(points, neighbours, 0), hn::Broadcast<0>(slope), even_);
+        odd_ = added(load_points(points, neighbours, 1), hn::Broadcast<1>(slope), odd_);
+        even_ = added(load_points(points, neighbours, 2), hn::Broadcast<2>(slope), even_);
+        odd_ = added(load_points(points, neighbours, 3), hn::Broadcast<3>(slope), odd_);
+    }
+    HWY_INLINE void store(Vec4* out) const
+    {
+        const hn::FixedTag<float, 4> four;
+        const V sum = hn::Add(even_, odd_);
+        float* c = reinterpret_cast<float*>(out);
+#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_EMU128
+        hn::Store(sum, four, c);
+#else
+        hn::Store(hn::Add(hn::LowerHalf(four, sum), hn::UpperHalf(four, sum)), four, c);
+#endif
+        c[3] = 0;
+    }
+
+  private:
+    V own_, even_, odd_;
+#endif
+};
+
+/// sum_j slope_j (x_i - x_j) . v_j, without transposing; the velocities' fourth components are 0.
+class DivergenceSum {
+  public:
+#if HWY_TARGET == HWY_SCALAR
+    HWY_INLINE explicit DivergenceSum(const Vec4& point) : own_(broadcast(point)), even_(hn::Zero(Floats())) {}
+    template <class Neighbours>
+    HWY_INLINE void add(const Vec4* position, const Vec4* velocity, const Neighbours& neighbours, V slope)
+    {
+        const V3 x = difference(own_, load_transposed(position, neighbours));
+        even_ = hn::MulAdd(slope, dot(x, load_transposed(velocity, neighbours)), even_);
+    }
+    [[nodiscard]] HWY_INLINE float total() const
+    {
+        return hn::GetLane(even_);
+    }
+
+  private:
+    V4 own_;
+    V even_;
+#else
+    HWY_INLINE explicit DivergenceSum(const Vec4& point)
+        : own_(hn::LoadDup128(Floats(), reinterpret_cast<const float*>(&point))), even_(hn::Zero(Floats())), odd_(even_)
+    {
+    }
+    template <class Neighbours>
+    HWY_INLINE void add(const Vec4* position, const Vec4* velocity, const Neighbours& neighbours, V slope)
+    {
+        const auto added = [&](int lane, V of_pair, V sum) FLOTSAM_INLINE {
+            const V arm = hn::Sub(own_, load_points(position, neighbours, lane));
+            return hn::MulAdd(of_pair, hn::Mul(arm, load_points(velocity, neighbours, lane)), sum);
+        };
+        even_ = added(0, hn::Broadcast<0>(slope), even_);
+        odd_ = added(1, hn::Broadcast<1>(slope), odd_);
+        even_ = added(2, hn::Broadcast<2>(slope), even_);
+        odd_ = added(3, hn::Broadcast<3>(slope), odd_);
+    }
+    [[nodiscard]] HWY_INLINE float total() const
+    {
+        return sum_lanes(hn::Add(even_, odd_));
+    }
+
+  private:
+    V own_, even_, odd_;
+#endif
+};
 
 HWY_INLINE void store_vec3(const V3& v, Vec4* out)
 {

@@ -12,17 +12,10 @@ namespace flotsam::simd::HWY_NAMESPACE {
 
 void sum_gradients(const SelfPairs& pairs, const Vec4* points, std::size_t begin, std::size_t end, Vec4* out)
 {
-    const V zero = hn::Zero(Floats());
     for (std::size_t i = begin; i < end; ++i) {
-        const V4 own = broadcast(points[i]);
-        V3 sum{zero, zero, zero};
-        for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE {
-            const V4 other = load_transposed(points, neighbours);
-            const V3 x = difference(own, other);
-            const V factor = hn::Mul(slope, other.w);
-            sum = {hn::MulAdd(factor, x.x, sum.x), hn::MulAdd(factor, x.y, sum.y), hn::MulAdd(factor, x.z, sum.z)};
-        });
-        store_vec3(sum, out + i);
+        GradientSum sum(points[i]);
+        for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE { sum.add(points, neighbours, slope); });
+        sum.store(out + i);
     }
 }
 
@@ -30,14 +23,11 @@ void sum_divergences(const SelfPairs& pairs, const Vec4* position, const Vec4* v
                      std::size_t end, Scalar* out)
 {
     for (std::size_t i = begin; i < end; ++i) {
-        const V4 own = broadcast(position[i]);
-        V sum = hn::Zero(Floats());
+        DivergenceSum sum(position[i]);
         for_row(pairs, i, [&](const auto& neighbours, V slope) FLOTSAM_INLINE {
-            const V3 x = difference(own, load_transposed(position, neighbours));
-            const V4 v = load_transposed(velocity, neighbours);
-            sum = hn::MulAdd(slope, dot(x, v), sum);
+            sum.add(position, velocity, neighbours, slope);
         });
-        out[i - begin] = sum_lanes(sum);
+        out[i - begin] = sum.total();
     }
 }
 

@@ -10,7 +10,8 @@
 /// the best one that the processor has is taken at run time. Each works on the rows [begin, end), on one thread; sums
 /// over the neighbours of a particle are taken in a fixed order that depends on the instruction set alone.
 ///
-/// A neighbour's values are loaded as float4 and transposed in registers; SelfPairs has four bytes a pair, the slope
+/// A neighbour's values are loaded as float4 and transposed in registers (sum_gradients and sum_divergences do without,
+/// which takes 4 % off a product of cubic pairs and 8 of quintic ones); SelfPairs has four bytes a pair, the slope
 /// among them. With eight, a product of sum_gradients and sum_divergences took 12 % more of quintic pairs that do not
 /// fit into the caches. Nanoseconds a pair of the two with 76 neighbours, AVX2, one core, as it was then: 0.5 and 0.7;
 /// with stored gradients (20 bytes a pair) 0.9 and 1.0, with slopes computed anew 1.1 and 1.2, and those with gathers
@@ -21,7 +22,7 @@ namespace flotsam::simd {
 void sum_gradients(const SelfPairs& pairs, std::span<const Vec4> at, std::size_t begin, std::size_t end,
                    std::span<Vec4> out);
 
-/// out_(i - begin) = sum_j v_j . grad W_ij
+/// out_(i - begin) = sum_j v_j . grad W_ij; the fourth components of `velocity` are 0.
 void sum_divergences(const SelfPairs& pairs, std::span<const Vec4> position, std::span<const Vec4> velocity,
                      std::size_t begin, std::size_t end, std::span<Scalar> out);
 
