@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 namespace flotsam {
 namespace {
@@ -30,6 +32,105 @@ void make_room(std::size_t size, std::size_t slack, std::vector<T>& values)
     if (values.capacity() < total) values.reserve(2 * total);
     values.resize(total);
     std::fill(values.end() - static_cast<std::ptrdiff_t>(slack), values.end(), T(0));
+}
+
+/// The turn of each chunk of a loop, in the order of the chunks: what comes before it is known then.
+class ChunkOrder {
+  public:
+    /// Chunks are to be started in their order.
+    std::size_t next() { return next_.fetch_add(1, std::memory_order_relaxed); }
+    /// Waits for the turn of a chunk; false where one before it has failed.
+    bool wait_for(std::size_t chunk)
+    {
+        for (std::size_t turn = turn_; turn != chunk; turn = turn_) {
+            if (turn == kFailed) return false;
+            turn_.wait(turn);
+        }
+        return true;
+    }
+    void pass_to(std::size_t chunk)
+    {
+        turn_ = chunk;
+        turn_.notify_all();
+    }
+    void fail() { pass_to(kFailed); }
+
+  private:
+    static constexpr std::size_t kFailed = std::numeric_limits<std::size_t>::max();
+    std::atomic<std::size_t> next_ = 0, turn_ = 0;
+};
+
+/// As large a part of all rows as there is room for, and the starts of all; returns the largest |j - i|.
+template <class Spline>
+std::uint32_t write_rows(const simd::Search& search, const Spline& kernel, std::size_t room, const Workers& workers,
+                         std::span<SelfRows> rows_of_threads, SelfPairs& pairs)
+{
+    const std::size_t count = search.points.size(), chunks = Workers::chunk_count(count);
+    pairs.start.resize(count + 1);
+    pairs.start[0] = 0;
+    ChunkOrder order;
+    std::uint32_t total = 0;
+    std::atomic<std::uint32_t> reach = 0;
+    const auto write_chunk = [&](std::size_t chunk, SelfRows& rows) {
+        const std::size_t begin = chunk * Workers::kChunk, end = std::min(count, begin + Workers::kChunk);
+        const std::uint32_t of_chunk = simd::find_self_rows(search, kernel, begin, end, rows, pairs);
+        const std::uint32_t size = std::accumulate(rows.length.begin(), rows.length.end(), std::uint32_t(0));
+        if (!order.wait_for(chunk)) return;
+        const std::uint32_t first = total;
+        total += size;
+        order.pass_to(chunk + 1);
+        std::inclusive_scan(rows.length.begin(), rows.length.end(),
+                            pairs.start.begin() + static_cast<std::ptrdiff_t>(begin + 1), std::plus<>(), first);
+        std::uint32_t before = reach;
+        while (before < of_chunk && !reach.compare_exchange_weak(before, of_chunk)) {
+        }
+        if (first + size > room) return;
+        std::copy_n(rows.parts.begin(), size, pairs.parts.begin() + first);
+        if (pairs.is_far())
+            std::copy_n(rows.index.begin(), size, pairs.index.begin() + first);
+        else
+            std::copy_n(rows.offset.begin(), size, pairs.offset.begin() + first);
+    };
+    workers.for_tasks(rows_of_threads.size(), [&](std::size_t thread) {
+        try {
+            for (std::size_t chunk = order.next(); chunk < chunks; chunk = order.next())
+                write_chunk(chunk, rows_of_threads[thread]);
+        } catch (...) {
+            order.fail();
+            throw;
+        }
+    });
+    return reach;
+}
+
+/// All rows; a second time where there are more pairs than there was room for.
+template <class Spline>
+std::uint32_t find_self_pairs(const simd::Search& search, const Spline& kernel, const Workers& workers,
+                              std::span<SelfRows> rows_of_threads, SelfPairs& pairs)
+{
+    const auto for_arrays = [&](auto&& change) {
+        change(pairs.parts);
+        if (pairs.is_far())
+            change(pairs.index);
+        else
+            change(pairs.offset);
+    };
+    for (;;) {
+        std::size_t room = std::numeric_limits<std::size_t>::max();
+        for_arrays([&](const auto& values) {
+            room = std::min(room, values.size() - std::min(values.size(), SelfPairs::kSlack));
+        });
+        const std::uint32_t reach = write_rows(search, kernel, room, workers, rows_of_threads, pairs);
+        const std::size_t size = pairs.size();
+        if (size <= room) {
+            for_arrays([&](auto& values) {
+                std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(size),
+                            std::min(values.size(), SelfPairs::kSlack), 0);
+            });
+            return reach;
+        }
+        for_arrays([&](auto& values) { make_room(size + size / 32, SelfPairs::kSlack, values); });
+    }
 }
 
 } // namespace
@@ -82,34 +183,19 @@ void NeighbourSearch::find_among(const Spline& kernel, const CellGrid& grid, con
                    "a cell must be at least one support radius wide");
     constexpr std::uint32_t kFarthest = std::numeric_limits<std::int16_t>::max();
     const simd::Search search{&grid, &lists, points, true, kernel.support()};
-    find_starts(search, workers, pairs.start);
-    const std::size_t count = points.size(), size = pairs.start[count];
+    rows_.resize(static_cast<std::size_t>(workers.threads()));
     pairs.unit = kernel.steepest() / SelfPairs::kParts;
-    pairs.kernel_sum.resize(count);
-    make_room(size, SelfPairs::kSlack, pairs.parts);
-    const auto write = [&] {
-        std::atomic<std::uint32_t> reach = 0;
-        workers.for_chunks(count, [&](std::size_t, std::size_t begin, std::size_t end) {
-            const std::uint32_t of_chunk = simd::write_self_pairs(search, kernel, begin, end, pairs);
-            std::uint32_t before = reach;
-            while (before < of_chunk && !reach.compare_exchange_weak(before, of_chunk)) {
-            }
-        });
-        return reach.load();
-    };
+    pairs.kernel_sum.resize(points.size());
+    const auto find = [&] { return find_self_pairs(search, kernel, workers, rows_, pairs); };
     if (!pairs.is_far()) {
-        make_room(size, SelfPairs::kSlack, pairs.offset);
-        if (write() <= kFarthest) return;
+        if (find() <= kFarthest) return;
         pairs.offset = {};
+        pairs.index.resize(1); // is_far()
     }
-    make_room(size, SelfPairs::kSlack, pairs.index);
     // Not at the first step that would do with less: water that sloshes about the limit would be written twice.
-    if (write() < kFarthest / 4 * 3)
-        pairs.index = {};
-    else
-        return;
-    make_room(size, SelfPairs::kSlack, pairs.offset);
-    write();
+    if (find() >= kFarthest / 4 * 3) return;
+    pairs.index = {};
+    find();
 }
 
 void NeighbourSearch::find(const QuinticSpline& kernel, const CellGrid& grid, const CellLists& lists,

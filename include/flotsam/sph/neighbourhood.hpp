@@ -58,6 +58,16 @@ struct SelfPairs {
     }
 };
 
+/// Some rows of SelfPairs as a thread finds them, before it is known where they will stand: no pass to count them.
+struct SelfRows {
+    std::vector<std::uint32_t> length; ///< of each row
+    std::vector<std::int16_t> offset;  ///< row after row, as in SelfPairs; so are the next two
+    std::vector<std::uint32_t> index;
+    std::vector<std::uint16_t> parts;
+    std::vector<std::uint32_t> found; ///< neighbours of the row under way
+    std::vector<Scalar> distance_sq;  ///< and their squared distances [m^2]
+};
+
 /// Neighbours of points among the points that `lists` has sorted into `grid`.
 class NeighbourSearch {
   public:
@@ -99,6 +109,8 @@ class NeighbourSearch {
     template <class Spline>
     void find_among(const Spline& kernel, const CellGrid& grid, const CellLists& lists, std::span<const Vec4> points,
                     const Workers& workers, SelfPairs& pairs);
+
+    std::vector<SelfRows> rows_; ///< of each thread
 };
 
 } // namespace flotsam

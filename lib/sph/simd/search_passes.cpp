@@ -29,33 +29,40 @@ namespace flotsam::simd::HWY_NAMESPACE {
 struct Ranges {
     std::uint32_t first[9], last[9];
     int count = 0;
+    std::size_t points = 0; ///< in all of them
     std::uint32_t cell = ~std::uint32_t(0);
 };
 
 inline void find_ranges(const CellGrid& grid, const CellLists& lists, const Eigen::Vector3i& home, Ranges& ranges)
 {
     ranges.count = 0;
+    ranges.points = 0;
     grid.visit_rows(home, 1, [&](std::uint32_t first_cell, std::uint32_t last_cell) {
         const std::uint32_t first = lists.start[first_cell], last = lists.start[last_cell + 1];
         if (first == last) return;
         ranges.first[ranges.count] = first;
         ranges.last[ranges.count++] = last;
+        ranges.points += last - first;
     });
 }
 
-/// Calls visit(indices, which are near, r^2) for each group of candidates of point i.
+/// Ranges of the candidates of point i.
+HWY_INLINE void enter_cell_of(const Search& search, std::size_t i, Ranges& ranges)
+{
+    const Eigen::Vector3i home = search.grid->cell_of(search.points[i]);
+    const std::uint32_t cell = search.grid->index_of(home);
+    if (cell == ranges.cell) return;
+    find_ranges(*search.grid, *search.lists, home, ranges);
+    ranges.cell = cell;
+}
+
+/// Calls visit(indices, which are near, r^2) for each group of candidates of point i, whose ranges are given.
 template <class Visit>
-HWY_INLINE void for_candidates(const Search& search, std::size_t i, Ranges& ranges, Visit&& visit)
+HWY_INLINE void for_candidates(const Search& search, std::size_t i, const Ranges& ranges, Visit&& visit)
 {
     const Floats d;
     const Ints du;
     const CellLists& lists = *search.lists;
-    const Eigen::Vector3i home = search.grid->cell_of(search.points[i]);
-    const std::uint32_t cell = search.grid->index_of(home);
-    if (cell != ranges.cell) {
-        find_ranges(*search.grid, lists, home, ranges);
-        ranges.cell = cell;
-    }
     const float* own = reinterpret_cast<const float*>(&search.points[i]);
     const V x = set(own[0]), y = set(own[1]), z = set(own[2]);
     const V support_sq = set(search.support * search.support);
@@ -108,6 +115,7 @@ void count_neighbours(const Search& search, std::size_t begin, std::size_t end, 
     Ranges ranges;
     for (std::size_t i = begin; i < end; ++i) {
         std::size_t count = 0;
+        enter_cell_of(search, i, ranges);
         for_candidates(search, i, ranges,
                        [&](U, auto near, V) FLOTSAM_INLINE { count += hn::CountTrue(Floats(), near); });
         counts[i - begin] = static_cast<std::uint32_t>(count);
@@ -122,6 +130,7 @@ void write_neighbours(const Search& search, std::size_t begin, std::size_t end, 
     const std::size_t chunk_end = pairs.start[end];
     for (std::size_t i = begin; i < end; ++i) {
         std::size_t k = pairs.start[i];
+        enter_cell_of(search, i, ranges);
         for_candidates(search, i, ranges, [&](U index, auto near, V distance_sq) FLOTSAM_INLINE {
             const std::size_t count = hn::CountTrue(d, near);
             const U kept = compress(du, index, hn::RebindMask(du, near));
@@ -218,89 +227,83 @@ void evaluate_cubic(const CubicSpline& kernel, std::span<const Scalar> weights, 
     evaluate(Cubic(kernel), weights, begin, end, pairs);
 }
 
-/// Neighbours of one point and their squared distances.
-class Row {
-  public:
-    /// Of point i, which has `count`.
-    HWY_INLINE void gather(const Search& search, std::size_t i, std::size_t count, Ranges& ranges)
-    {
-        const Floats d;
-        const Ints du;
-        if (count > kUsual) { // water that has been squeezed into a corner
-            more_index_.resize(count + kLanes);
-            more_distance_sq_.resize(count + kLanes);
-        }
-        index = count > kUsual ? more_index_.data() : index_;
-        distance_sq = count > kUsual ? more_distance_sq_.data() : distance_sq_;
-        std::size_t k = 0;
-        for_candidates(search, i, ranges, [&](U other, auto near, V sq) FLOTSAM_INLINE {
-            hn::StoreU(compress(du, other, hn::RebindMask(du, near)), du, index + k);
-            hn::StoreU(compress(d, sq, near), d, distance_sq + k);
-            k += hn::CountTrue(d, near);
-        });
-    }
+/// For `size` values at least, and as many again when there are more than ever before.
+template <class T>
+HWY_INLINE void make_room(std::size_t size, std::vector<T>& values)
+{
+    if (values.size() < size) values.resize(2 * size);
+}
 
-    std::uint32_t* index = nullptr;
-    float* distance_sq = nullptr;
-
-  private:
-    static constexpr std::size_t kUsual = 512;
-    HWY_ALIGN std::uint32_t index_[kUsual + kLanes];
-    HWY_ALIGN float distance_sq_[kUsual + kLanes];
-    std::vector<std::uint32_t> more_index_;
-    std::vector<float> more_distance_sq_;
-};
+/// Neighbours of point i and their squared distances, in rows.found and rows.distance_sq; how many there are.
+HWY_INLINE std::size_t gather(const Search& search, std::size_t i, Ranges& ranges, SelfRows& rows)
+{
+    const Floats d;
+    const Ints du;
+    enter_cell_of(search, i, ranges);
+    make_room(ranges.points + kLanes, rows.found);
+    make_room(ranges.points + kLanes, rows.distance_sq);
+    std::uint32_t* found = rows.found.data();
+    float* distance_sq = rows.distance_sq.data();
+    std::size_t count = 0;
+    for_candidates(search, i, ranges, [&](U other, auto near, V sq) FLOTSAM_INLINE {
+        hn::StoreU(compress(du, other, hn::RebindMask(du, near)), du, found + count);
+        hn::StoreU(compress(d, sq, near), d, distance_sq + count);
+        count += hn::CountTrue(d, near);
+    });
+    return count;
+}
 
 template <class Kernel>
-HWY_INLINE std::uint32_t write_rows(const Search& search, const Kernel& kernel, std::size_t begin, std::size_t end,
-                                    SelfPairs& pairs)
+HWY_INLINE std::uint32_t find_rows(const Search& search, const Kernel& kernel, std::size_t begin, std::size_t end,
+                                   SelfRows& rows, SelfPairs& pairs)
 {
     const Floats d;
     const Ints du;
     const SignedInts di;
     const V parts_per_slope = set(1 / pairs.unit);
-    const std::size_t chunk_end = pairs.start[end];
     const bool far = pairs.is_far();
     Ranges ranges;
-    Row row;
     auto reach = hn::Zero(di);
+    rows.length.resize(end - begin);
+    std::size_t first = 0; // of the row in the rows
     for (std::size_t i = begin; i < end; ++i) {
-        const std::size_t first = pairs.start[i], count = pairs.start[i + 1] - first;
-        row.gather(search, i, count, ranges);
+        const std::size_t count = gather(search, i, ranges, rows);
+        make_room(first + count + kLanes, rows.parts);
+        far ? make_room(first + count + kLanes, rows.index) : make_room(first + count + kLanes, rows.offset);
         const auto own = hn::Set(di, static_cast<std::int32_t>(i));
         V sum = hn::Zero(d);
-        for (std::size_t k = 0; k < count; k += kLanes) {
-            const std::size_t lanes = std::min(kLanes, count - k), room = chunk_end - first - k;
-            const auto in_row = hn::FirstN(d, lanes);
+        for (std::size_t k = 0; k < count; k += kLanes) { // what is too much falls into the next row's place
+            const auto in_row = hn::FirstN(d, std::min(kLanes, count - k));
             V slope, value;
-            kernel(hn::Sqrt(hn::IfThenElseZero(in_row, hn::LoadU(d, row.distance_sq + k))), slope, value);
+            kernel(hn::Sqrt(hn::IfThenElseZero(in_row, hn::LoadU(d, rows.distance_sq.data() + k))), slope, value);
             sum = hn::Add(sum, hn::IfThenElseZero(in_row, value));
             const auto parts = hn::NearestInt(hn::Mul(slope, parts_per_slope));
-            store_first(UnsignedShorts(), hn::DemoteTo(UnsignedShorts(), parts), lanes, room,
-                        pairs.parts.data() + first + k);
-            const U index = hn::LoadU(du, row.index + k);
+            hn::StoreU(hn::DemoteTo(UnsignedShorts(), parts), UnsignedShorts(), rows.parts.data() + first + k);
+            const U index = hn::LoadU(du, rows.found.data() + k);
             const auto offset = hn::Sub(hn::BitCast(di, index), own);
             reach = hn::Max(reach, hn::IfThenElseZero(hn::RebindMask(di, in_row), hn::Abs(offset)));
             if (far)
-                store_first(du, index, lanes, room, pairs.index.data() + first + k);
+                hn::StoreU(index, du, rows.index.data() + first + k);
             else
-                store_first(Shorts(), hn::DemoteTo(Shorts(), offset), lanes, room, pairs.offset.data() + first + k);
+                hn::StoreU(hn::DemoteTo(Shorts(), offset), Shorts(), rows.offset.data() + first + k);
         }
         pairs.kernel_sum[i] = sum_lanes(sum);
+        rows.length[i - begin] = static_cast<std::uint32_t>(count);
+        first += count;
     }
     return static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(di, reach)));
 }
 
-std::uint32_t write_self_quintic(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
-                                 SelfPairs& pairs)
+std::uint32_t find_quintic_rows(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
+                                SelfRows& rows, SelfPairs& pairs)
 {
-    return write_rows(search, Quintic(kernel), begin, end, pairs);
+    return find_rows(search, Quintic(kernel), begin, end, rows, pairs);
 }
 
-std::uint32_t write_self_cubic(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
-                               SelfPairs& pairs)
+std::uint32_t find_cubic_rows(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
+                              SelfRows& rows, SelfPairs& pairs)
 {
-    return write_rows(search, Cubic(kernel), begin, end, pairs);
+    return find_rows(search, Cubic(kernel), begin, end, rows, pairs);
 }
 
 } // namespace flotsam::simd::HWY_NAMESPACE
@@ -313,8 +316,8 @@ HWY_EXPORT(count_neighbours);
 HWY_EXPORT(write_neighbours);
 HWY_EXPORT(evaluate_quintic);
 HWY_EXPORT(evaluate_cubic);
-HWY_EXPORT(write_self_quintic);
-HWY_EXPORT(write_self_cubic);
+HWY_EXPORT(find_quintic_rows);
+HWY_EXPORT(find_cubic_rows);
 
 void count_neighbours(const Search& search, std::size_t begin, std::size_t end, std::uint32_t* counts)
 {
@@ -338,16 +341,16 @@ void evaluate_kernel(const CubicSpline& kernel, std::span<const Scalar> weights,
     HWY_DYNAMIC_DISPATCH(evaluate_cubic)(kernel, weights, begin, end, pairs);
 }
 
-std::uint32_t write_self_pairs(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
-                               SelfPairs& pairs)
+std::uint32_t find_self_rows(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
+                             SelfRows& rows, SelfPairs& pairs)
 {
-    return HWY_DYNAMIC_DISPATCH(write_self_quintic)(search, kernel, begin, end, pairs);
+    return HWY_DYNAMIC_DISPATCH(find_quintic_rows)(search, kernel, begin, end, rows, pairs);
 }
 
-std::uint32_t write_self_pairs(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
-                               SelfPairs& pairs)
+std::uint32_t find_self_rows(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
+                             SelfRows& rows, SelfPairs& pairs)
 {
-    return HWY_DYNAMIC_DISPATCH(write_self_cubic)(search, kernel, begin, end, pairs);
+    return HWY_DYNAMIC_DISPATCH(find_cubic_rows)(search, kernel, begin, end, rows, pairs);
 }
 
 } // namespace flotsam::simd

@@ -32,11 +32,11 @@ void evaluate_kernel(const QuinticSpline& kernel, std::span<const Scalar> weight
 void evaluate_kernel(const CubicSpline& kernel, std::span<const Scalar> weights, std::size_t begin, std::size_t end,
                      Pairs& pairs);
 
-/// Writes all of the rows of `pairs` but their starts, which are known, and of `offset` and `index` the one that there
-/// is; returns the largest |j - i|: differences above 2^15 - 1 have not been written right.
-std::uint32_t write_self_pairs(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
-                               SelfPairs& pairs);
-std::uint32_t write_self_pairs(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
-                               SelfPairs& pairs);
+/// Finds the rows, into `rows` instead of `pairs` (whose unit and is_far() are given; its kernel_sum is written);
+/// returns the largest |j - i|: differences above 2^15 - 1 have not been written right.
+std::uint32_t find_self_rows(const Search& search, const QuinticSpline& kernel, std::size_t begin, std::size_t end,
+                             SelfRows& rows, SelfPairs& pairs);
+std::uint32_t find_self_rows(const Search& search, const CubicSpline& kernel, std::size_t begin, std::size_t end,
+                             SelfRows& rows, SelfPairs& pairs);
 
 } // namespace flotsam::simd
