@@ -48,12 +48,16 @@ class ChunkOrder {
         }
         return true;
     }
-    void pass_to(std::size_t chunk)
+    /// Ends a chunk's turn.
+    void pass_on(std::size_t chunk)
     {
-        turn_ = chunk;
+        if (turn_.compare_exchange_strong(chunk, chunk + 1)) turn_.notify_all(); // unless one has failed meanwhile
+    }
+    void fail()
+    {
+        turn_ = kFailed;
         turn_.notify_all();
     }
-    void fail() { pass_to(kFailed); }
 
   private:
     static constexpr std::size_t kFailed = std::numeric_limits<std::size_t>::max();
@@ -78,7 +82,7 @@ std::uint32_t write_rows(const simd::Search& search, const Spline& kernel, std::
         if (!order.wait_for(chunk)) return;
         const std::uint32_t first = total;
         total += size;
-        order.pass_to(chunk + 1);
+        order.pass_on(chunk);
         std::inclusive_scan(rows.length.begin(), rows.length.end(),
                             pairs.start.begin() + static_cast<std::ptrdiff_t>(begin + 1), std::plus<>(), first);
         std::uint32_t before = reach;
