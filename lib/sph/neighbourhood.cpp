@@ -73,8 +73,7 @@ std::uint32_t write_rows(const simd::Search& search, const Spline& kernel, std::
     pairs.start.resize(count + 1);
     pairs.start[0] = 0;
     ChunkOrder order;
-    std::uint32_t total = 0;
-    std::atomic<std::uint32_t> reach = 0;
+    std::uint32_t total = 0, reach = 0; // of the chunks whose turn has been
     const auto write_chunk = [&](std::size_t chunk, SelfRows& rows) {
         const std::size_t begin = chunk * Workers::kChunk, end = std::min(count, begin + Workers::kChunk);
         const std::uint32_t of_chunk = simd::find_self_rows(search, kernel, begin, end, rows, pairs);
@@ -82,12 +81,10 @@ std::uint32_t write_rows(const simd::Search& search, const Spline& kernel, std::
         if (!order.wait_for(chunk)) return;
         const std::uint32_t first = total;
         total += size;
+        reach = std::max(reach, of_chunk);
         order.pass_on(chunk);
         std::inclusive_scan(rows.length.begin(), rows.length.end(),
                             pairs.start.begin() + static_cast<std::ptrdiff_t>(begin + 1), std::plus<>(), first);
-        std::uint32_t before = reach;
-        while (before < of_chunk && !reach.compare_exchange_weak(before, of_chunk)) {
-        }
         if (first + size > room) return;
         std::copy_n(rows.parts.begin(), size, pairs.parts.begin() + first);
         if (pairs.is_far())
