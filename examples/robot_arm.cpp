@@ -30,7 +30,7 @@ int main()
         colliders[k] = std::make_unique<btMultiBodyLinkCollider>(&arm, k);
         colliders[k]->setCollisionShape(&shape);
         arm.getLink(k).m_collider = colliders[k].get();
-        world.addCollisionObject(colliders[k].get());
+        world.addCollisionObject(colliders[k].get(), btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter);
         motors[k] = std::make_unique<btMultiBodyJointMotor>(&arm, k, k == 0 ? btScalar(0.5) : 0, btScalar(1));
         world.addMultiBodyConstraint(motors[k].get()); // [rad/s], with an impulse of at most 1 N m s in a step
     }

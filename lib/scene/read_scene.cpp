@@ -1,6 +1,7 @@
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/scene/scene_file.hpp"
 #include "scene/history_columns.hpp"
+#include "scene/read_articulations.hpp"
 #include "scene/read_joints.hpp"
 
 #include <algorithm>
@@ -156,7 +157,8 @@ SceneFile read_root(const Json& document, const std::filesystem::path& file)
 {
     const JsonObject root(JsonNode(document, file.string(), ""),
                           {"flotsam", "dimensions", "particle_spacing", "gravity", "duration", "time_step", "kernel",
-                           "pressure", "start", "fluids", "walls", "bodies", "joints", "probes", "output"});
+                           "pressure", "start", "fluids", "walls", "bodies", "joints", "articulations", "probes",
+                           "output"});
     read_version(root);
     SceneFile scene;
     scene.file = file;
@@ -181,6 +183,7 @@ SceneFile read_root(const Json& document, const std::filesystem::path& file)
         add_name(names, scene.bodies.back().name, node);
     }
     scene.joints = read_joints(root, context, scene.bodies, names);
+    scene.articulations = read_articulations(root, scene);
     for (const JsonNode& node : root.list("probes")) {
         scene.probes.push_back(read_probe(node, context));
         add_name(names, scene.probes.back().name, node);

@@ -53,12 +53,12 @@ std::unique_ptr<btRigidBody> rigid_body(double mass, const Vec3d& inertia, const
 }
 
 std::unique_ptr<btRigidBody> body_of(const SceneFile& scene, const SceneBody& body, const PreparedBody& prepared,
-                                     BulletShapes& shapes)
+                                     btCollisionShape* shape)
 {
     using Motion = SceneBody::Motion;
     const bool dynamic = body.motion == Motion::dynamic;
     auto made = rigid_body(dynamic ? prepared.mass : 0.0, dynamic ? prepared.inertia : Vec3d(Vec3d::Zero()),
-                           prepared.start, body.friction, add_body_shape(prepared, dynamic, shapes));
+                           prepared.start, body.friction, shape);
     if (body.motion == Motion::moving)
         made->setCollisionFlags(made->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
     if (body.motion == Motion::fixed) return made;
@@ -98,7 +98,9 @@ SceneWorld::~SceneWorld()
 {
     coupling_.reset();
     joints_.clear();
-    for (const auto& body : bodies_) world_.removeRigidBody(body.get());
+    for (const Body& body : bodies_)
+        if (body.rigid) world_.removeRigidBody(body.rigid.get());
+    articulations_.clear();
     for (const auto& wall : walls_) world_.removeRigidBody(wall.get());
 }
 
@@ -122,33 +124,60 @@ void SceneWorld::add_walls(const SceneFile& scene, const PreparedScene& prepared
 
 void SceneWorld::add_bodies(const SceneFile& scene, const PreparedScene& prepared)
 {
+    std::vector<btCollisionShape*> shapes;
+    for (std::size_t k = 0; k < scene.bodies.size(); ++k)
+        shapes.push_back(
+            add_body_shape(prepared.bodies[k], scene.bodies[k].motion == SceneBody::Motion::dynamic, shapes_));
+    bodies_.resize(scene.bodies.size());
+    joints_.resize(scene.joints.size());
+    for (const SceneArticulation& articulation : scene.articulations) {
+        articulations_.push_back(std::make_unique<Articulation>(scene, articulation, prepared, shapes, world_));
+        Articulation* made = articulations_.back().get();
+        for (std::size_t link = 0; link < made->size(); ++link) {
+            bodies_[made->body(link)].link = {made, link};
+            if (const auto joint = made->joint(link)) joints_[*joint].link = {made, link};
+        }
+    }
     for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
-        bodies_.push_back(body_of(scene, scene.bodies[k], prepared.bodies[k], shapes_));
-        world_.addRigidBody(bodies_.back().get());
-        fluid_.name_body(coupling_->add(*bodies_.back(), prepared.bodies[k].mesh), prepared.bodies[k].name);
+        const PreparedBody& from = prepared.bodies[k];
+        const auto [articulation, link] = bodies_[k].link;
+        if (articulation == nullptr) {
+            bodies_[k].rigid = body_of(scene, scene.bodies[k], from, shapes[k]);
+            world_.addRigidBody(bodies_[k].rigid.get());
+        }
+        const int number = articulation == nullptr ? coupling_->add(*bodies_[k].rigid, from.mesh)
+                                                   : coupling_->add(articulation->collider(link), from.mesh);
+        fluid_.name_body(number, from.name);
     }
 }
 
 void SceneWorld::add_joints(const SceneFile& scene)
 {
-    if (scene.joints.empty()) return;
-    world_.getSolverInfo().m_numIterations = kIterationsWithJoints;
-    ground_ = rigid_body(0.0, Vec3d::Zero(), Pose(), 0.0, nullptr);
-    for (const SceneJoint& joint : scene.joints)
-        joints_.push_back(
-            std::make_unique<BulletJoint>(joint, *bodies_[joint.a], joint.b ? *bodies_[*joint.b] : *ground_, world_));
+    if (!scene.joints.empty()) world_.getSolverInfo().m_numIterations = kIterationsWithJoints;
+    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+        if (joints_[k].link.articulation != nullptr) continue;
+        if (!ground_) ground_ = rigid_body(0.0, Vec3d::Zero(), Pose(), 0.0, nullptr);
+        const SceneJoint& joint = scene.joints[k];
+        joints_[k].constraint = std::make_unique<BulletJoint>(joint, *bodies_[joint.a].rigid,
+                                                              joint.b ? *bodies_[*joint.b].rigid : *ground_, world_);
+    }
 }
 
 StepReport SceneWorld::step(double dt)
 {
-    StepReport report = coupling_->step(dt);
-    for (const auto& joint : joints_) joint->update();
+    for (const auto& articulation : articulations_) articulation->begin_step(dt);
+    const StepReport report = coupling_->step(dt);
+    for (const auto& articulation : articulations_) articulation->end_step(fluid_, report.dt);
+    for (const Joint& joint : joints_)
+        if (joint.constraint) joint.constraint->update();
     return report;
 }
 
 BodyNow SceneWorld::body(std::size_t k) const
 {
-    const btRigidBody& body = *bodies_[k];
+    const auto [articulation, link] = bodies_[k].link;
+    if (articulation != nullptr) return {articulation->pose(link), articulation->twist(link)};
+    const btRigidBody& body = *bodies_[k].rigid;
     return {from_bullet(body.getWorldTransform()),
             {from_bullet(body.getLinearVelocity()), from_bullet(body.getAngularVelocity())}};
 }
@@ -158,9 +187,16 @@ std::vector<BodyState> SceneWorld::body_states() const
     std::vector<BodyState> states;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const BodyNow now = body(k);
-        states.push_back({now.pose, now.twist, !bodies_[k]->isStaticOrKinematicObject()});
+        const bool responds = !bodies_[k].rigid || !bodies_[k].rigid->isStaticOrKinematicObject();
+        states.push_back({now.pose, now.twist, responds});
     }
     return states;
+}
+
+const JointNow& SceneWorld::joint(std::size_t k) const
+{
+    const auto [articulation, link] = joints_[k].link;
+    return articulation != nullptr ? articulation->joint_now(link) : joints_[k].constraint->now();
 }
 
 } // namespace flotsam::scene

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "flotsam/bullet/bullet_coupling.hpp"
+#include "scene/articulation.hpp"
 #include "scene/bullet_joint.hpp"
 #include "scene/bullet_shapes.hpp"
 #include "scene/prepared_scene.hpp"
+
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 
 #include <functional>
 #include <memory>
@@ -33,11 +36,23 @@ class SceneWorld {
     /// Of all bodies, as FluidWorld::waterline wants them.
     [[nodiscard]] std::vector<BodyState> body_states() const;
 
-    [[nodiscard]] const JointNow& joint(std::size_t k) const { return joints_[k]->now(); }
+    [[nodiscard]] const JointNow& joint(std::size_t k) const;
 
     StepReport step(double dt);
 
   private:
+    struct InArticulation {
+        Articulation* articulation = nullptr;
+        std::size_t link = 0;
+    };
+    struct Body {
+        std::unique_ptr<btRigidBody> rigid; ///< null: a link
+        InArticulation link;
+    };
+    struct Joint {
+        std::unique_ptr<BulletJoint> constraint; ///< null: that of a link
+        InArticulation link;
+    };
     void add_fluid(const PreparedScene& prepared);
     void add_walls(const SceneFile& scene, const PreparedScene& prepared);
     void add_bodies(const SceneFile& scene, const PreparedScene& prepared);
@@ -48,11 +63,13 @@ class SceneWorld {
     btDefaultCollisionConfiguration configuration_;
     btCollisionDispatcher dispatcher_;
     btDbvtBroadphase broadphase_;
-    btSequentialImpulseConstraintSolver solver_;
-    btDiscreteDynamicsWorld world_;
+    btMultiBodyConstraintSolver solver_;
+    btMultiBodyDynamicsWorld world_;
     std::unique_ptr<btRigidBody> ground_; ///< what joints to the world hold on to; not in world_
-    std::vector<std::unique_ptr<btRigidBody>> walls_, bodies_;
-    std::vector<std::unique_ptr<BulletJoint>> joints_;
+    std::vector<std::unique_ptr<btRigidBody>> walls_;
+    std::vector<std::unique_ptr<Articulation>> articulations_;
+    std::vector<Body> bodies_;
+    std::vector<Joint> joints_;
     std::unique_ptr<BulletCoupling> coupling_;
 };
 

@@ -97,6 +97,13 @@ struct SceneJoint {
     std::optional<Motor> motor;   ///< of hinge or slider
 };
 
+/// `{"joints": [NAME, ...]}`: joints that Bullet solves in reduced coordinates, as one btMultiBody; they cannot come
+/// open. Their bodies are dynamic and hang in a tree, each `a` by one joint, from the world or from a body that is the
+/// `a` of none; no other joint holds one of them.
+struct SceneArticulation {
+    std::vector<std::size_t> joints; ///< numbers, each after the one that holds its `b`
+};
+
 /// `{"name", "pressure": [x, y, z]}` in Pa or `{"name", "level": [x, y]}` in m.
 struct SceneProbe {
     std::string name;
@@ -147,6 +154,7 @@ struct SceneFile {
     std::vector<SceneWall> walls;
     std::vector<SceneBody> bodies;
     std::vector<SceneJoint> joints;
+    std::vector<SceneArticulation> articulations;
     std::vector<SceneProbe> probes;
     SceneOutput output;
 };
