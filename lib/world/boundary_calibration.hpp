@@ -11,7 +11,8 @@ namespace flotsam {
 /// Where samples lie and how much they count, once for each kernel and blue-noise samples.
 struct BoundaryCalibration {
     double inset;  ///< depth of the samples below the true surface, in spacings
-    double volume; ///< V_b = volume / sum_b' W_bb'
+    double volume; ///< V_b = volume / sum_b' W_bb'; of bodies, what fit_volumes starts with
+    double solid;  ///< density of bodies in fit_volumes
 };
 
 /// The constants for a kernel in 2 or 3 dimensions, found on settled water: level and pressure of a still tank and the

@@ -14,6 +14,7 @@
 #include "sph/pressure/complementarity_solver.hpp"
 #include "sph/pressure/pressure_system.hpp"
 #include "sph/pressure/response_preconditioner.hpp"
+#include "world/boundary_calibration.hpp"
 #include "world/keep_ledger.hpp"
 #include "world/sheet_screen.hpp"
 #include "world/wall_guard.hpp"
@@ -199,9 +200,10 @@ struct FluidWorld::Impl {
     void prepare_wall_samples(std::size_t k);
     void find_reached_parts(const Wall& wall);
     void sample_walls_in_reach();
+    [[nodiscard]] BoundaryCalibration calibration() const;
     [[nodiscard]] double sample_inset() const;
     [[nodiscard]] SurfaceSampleSettings sample_settings(SurfaceSampleSettings::Solid solid) const;
-    void add_samples(std::size_t owner, const SurfaceSamples& samples, const SurfaceSamples& around);
+    void add_samples(std::size_t owner, const SurfaceSamples& samples, std::span<const double> volumes);
     [[nodiscard]] std::vector<double> volumes_of(const SurfaceSamples& samples, const SurfaceSamples& around) const;
     [[nodiscard]] SurfaceSampleSettings wall_sampling(const Wall& wall) const;
     [[nodiscard]] std::unique_ptr<Sheet> sheet_of(const SurfaceQuery& query, const SurfaceSampleSettings& sampling,

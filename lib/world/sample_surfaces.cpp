@@ -1,6 +1,6 @@
 #include "world/fluid_world_impl.hpp"
 
-#include "world/boundary_calibration.hpp"
+#include "world/fit_volumes.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -9,9 +9,14 @@
 
 namespace flotsam {
 
+BoundaryCalibration FluidWorld::Impl::calibration() const
+{
+    return boundary_calibration(settings.kernel, settings.dimensions);
+}
+
 double FluidWorld::Impl::sample_inset() const
 {
-    return boundary_calibration(settings.kernel, settings.dimensions).inset * spacing();
+    return calibration().inset * spacing();
 }
 
 SurfaceSampleSettings FluidWorld::Impl::sample_settings(SurfaceSampleSettings::Solid solid) const
@@ -24,10 +29,8 @@ SurfaceSampleSettings FluidWorld::Impl::sample_settings(SurfaceSampleSettings::S
     return sampling;
 }
 
-/// `around`: samples of the same surface that are not to be added, but count in the volumes of those that are.
-void FluidWorld::Impl::add_samples(std::size_t owner, const SurfaceSamples& samples, const SurfaceSamples& around)
+void FluidWorld::Impl::add_samples(std::size_t owner, const SurfaceSamples& samples, std::span<const double> volumes)
 {
-    const std::vector<double> volumes = volumes_of(samples, around);
     const bool is_sheet = !samples.normal.empty();
     if (is_sheet) {
         boundary.normal.resize(boundary.size(), Vec4::Zero());
@@ -53,7 +56,7 @@ void FluidWorld::Impl::add_samples(std::size_t owner, const SurfaceSamples& samp
     boundary.normal_body.resize(boundary.size(), Vec4::Zero());
 }
 
-/// Of the first ones; the sides of a sheet each for itself.
+/// Of `samples`; those `around` are of the same surface and count in them. The sides of a sheet each for itself.
 std::vector<double> FluidWorld::Impl::volumes_of(const SurfaceSamples& samples, const SurfaceSamples& around) const
 {
     std::vector<double> volumes(samples.positions.size());
@@ -104,7 +107,11 @@ void FluidWorld::Impl::sample_body(std::size_t k)
         const SurfaceSamples samples = sample_surface(*body.query, sampling, workers);
         body.sheet = sheet_of(*body.query, sampling, samples);
         body.thin_fraction = samples.thin_fraction;
-        add_samples(walls.size() + k, samples, {});
+        std::vector<double> volumes = volumes_of(samples, {});
+        if (!body.sheet)
+            fit_volumes(*body.query, {settings.kernel, settings.dimensions, spacing(), calibration().solid},
+                        samples.positions, volumes, workers);
+        add_samples(walls.size() + k, samples, volumes);
     }
     note_thin(body.name, body.thin_fraction);
 }
@@ -166,7 +173,7 @@ void FluidWorld::Impl::prepare_wall_samples(std::size_t k)
     }
     const SurfaceSamples samples = sample_surface(*wall.query, sampling, workers);
     wall.sheet = sheet_of(*wall.query, sampling, samples);
-    add_samples(k, samples, {});
+    add_samples(k, samples, volumes_of(samples, {}));
     note_thin(wall.name, samples.thin_fraction);
 }
 
@@ -214,7 +221,7 @@ void FluidWorld::Impl::sample_walls_in_reach()
             }
             const SurfaceSampler::Part found = wall.sampler->sample(part, workers);
             if (!wall.sheet) wall.sheet = sheet_of(*wall.query, wall_sampling(wall), found.samples);
-            add_samples(k, found.samples, found.around);
+            add_samples(k, found.samples, volumes_of(found.samples, found.around));
             if (!wall.is_noted_thin) note_thin(wall.name, found.samples.thin_fraction);
             wall.is_noted_thin = wall.is_noted_thin || found.samples.thin_fraction > 0.0;
         }

@@ -1,4 +1,5 @@
 #include "support/catch.hpp"
+#include "support/scene_run.hpp"
 
 #include "flotsam/geometry/mass_properties.hpp"
 #include "flotsam/geometry/shapes.hpp"
@@ -125,4 +126,25 @@ TEST_CASE("a body held under water is lifted by the weight of the water that it 
     CHECK(force.head<2>().norm() < 0.01 * displaced);
     CHECK(torque.norm() < 0.01 * displaced * diameter);
     CHECK(std::sqrt(std::max(0.0, squares / seconds - force.z() * force.z())) < 0.05 * displaced);
+}
+
+TEST_CASE("small bodies displace their volume, edges and corners included", "[validation][buoyancy]")
+{
+    struct Held {
+        const char* shape;
+        double volume; ///< [spacings^3]
+    };
+    const Held each = GENERATE(values<Held>({{R"({"box": [0.08, 0.08, 0.08]})", 64.0},
+                                             {R"({"sphere": 0.06})", 113.097},
+                                             {R"({"box": [0.2, 0.08, 0.08]})", 160.0},
+                                             {R"({"box": [0.2, 0.2, 0.06]})", 300.0}}));
+    const RunReport report =
+        test::run_text(R"({"flotsam": 1, "particle_spacing": 0.02, "duration": 0.8, "start": "at_rest",
+        "fluids": [{"blocks": [{"min": [0, 0, 0], "max": [0.44, 0.44, 0.5]}]}],
+        "walls": [{"box": {"min": [0, 0, 0], "max": [0.44, 0.44, 0.7], "open": ["+z"]}}],
+        "bodies": [{"name": "held", "motion": "fixed", "position": [0.22, 0.22, 0.25], "shape": )" +
+                       std::string(each.shape) + "}]}");
+    CAPTURE(each.shape);
+    const Vec3d force = report.bodies.at(0).force_fluid_mean;
+    CHECK(force.z() == Approx(9810.0 * 8e-6 * each.volume).epsilon(0.02));
 }

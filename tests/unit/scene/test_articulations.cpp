@@ -3,6 +3,7 @@
 #include "support/catch.hpp"
 
 #include <cmath>
+#include <filesystem>
 
 using namespace flotsam;
 using namespace flotsam::testing;
@@ -143,6 +144,21 @@ TEST_CASE("joints of an articulation bear the weight of their links less that of
     CHECK(report.joints.at(1).torque_mean.y() == Approx(-0.15 * weight).epsilon(0.02));
     CHECK(report.ledger.errors().momentum.norm() < 1e-5 * report.ledger.scales().momentum);
     CHECK(std::abs(report.joints.at(0).angle_deg.value()) < 1e-6);
+}
+
+TEST_CASE("joints of an arm bear the weight of its links less that of the water", "[scene][articulation]")
+{
+    Watcher watcher;
+    const SceneFile arm =
+        read_scene(std::filesystem::path(FLOTSAM_DATA_DIR) / "scenes/arm_in_water.json", {"output.pictures=false"});
+    const RunReport report = run_scene(arm, {{}, 0}, watcher);
+    const double weight = 1500.0 * 0.2 * 0.08 * 0.08 * kG; // in water, of a link
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double links = 3.0 - static_cast<double>(k);
+        CHECK(report.joints.at(k).force_mean.z() == Approx(links * weight).epsilon(0.02));
+        CHECK(report.joints.at(k).torque_mean.y() == Approx(-links * weight * 0.1 * links).epsilon(0.03));
+        CHECK(std::abs(report.joints.at(k).angle_deg.value()) < 1e-6);
+    }
 }
 
 TEST_CASE("bad articulations are refused with the place and what is allowed", "[scene][articulation]")

@@ -1,0 +1,180 @@
+#include "world/fit_volumes.hpp"
+
+#include "flotsam/geometry/surface_samples.hpp"
+#include "geometry/plane_cut.hpp"
+#include "geometry/point_grid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace flotsam {
+namespace {
+
+constexpr int kRounds = 5;
+constexpr double kInFront = 0.5;    ///< of the surface, where water lies [spacings]
+constexpr double kPatch = 0.25;     ///< edges of the surface's patches [spacings]
+constexpr double kLeastSeen = 1e-3; ///< of full density: less has no say
+constexpr double kMostChange = 3.0;
+
+/// A piece of the surface, and its outward normal times its area (in 2-D: a line, times its length).
+struct Patch {
+    Vec3d middle, area;
+};
+
+void add_patches(const std::array<Vec3d, 3>& triangle, double size, std::vector<Patch>& patches)
+{
+    const Vec3d &a = triangle[0], ab = triangle[1] - a, ac = triangle[2] - a;
+    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    const int n = std::max(1, static_cast<int>(std::ceil(longest / size)));
+    const Vec3d area = 0.5 / (n * n) * ab.cross(ac);
+    const auto add = [&](int i, int j, double inside) {
+        patches.push_back({a + (i + inside) / n * ab + (j + inside) / n * ac, area});
+    };
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; i + j < n; ++j) {
+            add(i, j, 1.0 / 3.0);
+            if (i + j < n - 1) add(i, j, 2.0 / 3.0);
+        }
+}
+
+void add_patches(const CutLine& line, double size, std::vector<Patch>& patches)
+{
+    const std::size_t count = line.points.size(), segments = count - (line.closed ? 0 : 1);
+    for (std::size_t k = 0; k < segments; ++k) {
+        const Vec2d &a = line.points[k], way = line.points[(k + 1) % count] - a;
+        const int n = std::max(1, static_cast<int>(std::ceil(way.norm() / size)));
+        for (int i = 0; i < n; ++i)
+            patches.push_back({in_space(a + (i + 0.5) / n * way), in_space(Vec2d(way.y(), -way.x()) / n)});
+    }
+}
+
+std::vector<Patch> patches_of(const TriangleMesh& mesh, const VolumeFit& fit)
+{
+    std::vector<Patch> patches;
+    const double size = kPatch * fit.particle_spacing;
+    if (fit.dimensions == 2) {
+        for (const CutLine& line : cut_at_y0(mesh)) add_patches(line, size, patches);
+        return patches;
+    }
+    for (const auto& corners : mesh.triangles)
+        add_patches({mesh.vertices[corners[0]], mesh.vertices[corners[1]], mesh.vertices[corners[2]]}, size, patches);
+    return patches;
+}
+
+/// The field F(r) / r: along the way from a point, with the kernel at the point as its divergence.
+class KernelField {
+  public:
+    KernelField(const Kernel& kernel, int dimensions)
+        : support_(static_cast<double>(kernel.support())), dimensions_(dimensions)
+    {
+        integral_.push_back(0.0);
+        for (int k = 0; k < kSteps; ++k) {
+            const double r = (k + 0.5) * support_ / kSteps;
+            const double shell = dimensions == 3 ? r * r : r;
+            integral_.push_back(integral_.back() +
+                                shell * static_cast<double>(kernel.value(static_cast<Scalar>(r))) * support_ / kSteps);
+        }
+    }
+    [[nodiscard]] double support() const { return support_; }
+    /// For 0 < r <= support.
+    [[nodiscard]] double operator()(double r) const
+    {
+        const double at = std::min(r / support_ * kSteps, kSteps - 1e-9);
+        const auto k = static_cast<std::size_t>(at);
+        const double within = integral_[k] + (at - static_cast<double>(k)) * (integral_[k + 1] - integral_[k]);
+        return (within - integral_.back()) / (dimensions_ == 3 ? r * r * r : r * r);
+    }
+
+  private:
+    static constexpr int kSteps = 2000;
+    double support_;
+    int dimensions_;
+    std::vector<double> integral_;
+};
+
+/// What each of the points is to see of the solid.
+std::vector<double> seen_of_solid(const TriangleMesh& mesh, const VolumeFit& fit, const Kernel& kernel,
+                                  std::span<const Vec3d> points, const Workers& workers)
+{
+    const KernelField field(kernel, fit.dimensions);
+    const std::vector<Patch> patches = patches_of(mesh, fit);
+    std::vector<Vec3d> middles;
+    for (const Patch& patch : patches) middles.push_back(patch.middle);
+    const PointGrid grid(middles, field.support());
+    std::vector<double> seen(points.size(), 0.0);
+    workers.for_each(points.size(), [&](std::size_t k) {
+        grid.for_near(points[k], field.support(), [&](std::size_t p, double distance_sq) {
+            if (distance_sq > 0.0)
+                seen[k] += field(std::sqrt(distance_sq)) * (middles[p] - points[k]).dot(patches[p].area);
+        });
+        seen[k] *= fit.density;
+    });
+    return seen;
+}
+
+/// One round: `points` see `want`.
+class Round {
+  public:
+    Round(const Kernel& kernel, std::span<const Vec3d> samples, std::span<const Vec3d> points,
+          std::span<const double> want, const Workers& workers)
+        : kernel_(kernel), support_(static_cast<double>(kernel.support())), samples_(samples), points_(points),
+          want_(want), workers_(workers), sample_grid_(samples, support_), point_grid_(points, support_),
+          ratio_(points.size())
+    {
+    }
+    void improve(std::span<double> volumes)
+    {
+        workers_.for_each(points_.size(), [&](std::size_t k) {
+            double have = 0.0;
+            sample_grid_.for_near(points_[k], support_,
+                                  [&](std::size_t b, double distance_sq) { have += volumes[b] * weight(distance_sq); });
+            ratio_[k] = have > 0.0 && want_[k] > kLeastSeen ? want_[k] / have : 1.0;
+        });
+        workers_.for_each(samples_.size(), [&](std::size_t b) {
+            double sum = 0.0, of = 0.0;
+            point_grid_.for_near(samples_[b], support_, [&](std::size_t k, double distance_sq) {
+                const double w = weight(distance_sq);
+                sum += w * ratio_[k];
+                of += w;
+            });
+            if (of > 0.0) volumes[b] *= sum / of;
+        });
+    }
+
+  private:
+    [[nodiscard]] double weight(double distance_sq) const
+    {
+        return static_cast<double>(kernel_.value(static_cast<Scalar>(std::sqrt(distance_sq))));
+    }
+
+    const Kernel& kernel_;
+    double support_;
+    std::span<const Vec3d> samples_, points_;
+    std::span<const double> want_;
+    const Workers& workers_;
+    PointGrid sample_grid_, point_grid_;
+    std::vector<double> ratio_;
+};
+
+} // namespace
+
+void fit_volumes(const SurfaceQuery& solid, const VolumeFit& fit, std::span<const Vec3d> positions,
+                 std::span<double> volumes, const Workers& workers)
+{
+    SurfaceSampleSettings in_front;
+    in_front.spacing = 0.7 * fit.particle_spacing;
+    in_front.inset = kInFront * fit.particle_spacing;
+    in_front.dimensions = fit.dimensions;
+    in_front.solid = SurfaceSampleSettings::Solid::outside;
+    const std::vector<Vec3d> points = sample_surface(solid, in_front, workers).positions;
+    const Kernel kernel(fit.kernel, fit.particle_spacing, fit.dimensions);
+    const std::vector<double> want = seen_of_solid(solid.mesh(), fit, kernel, points, workers);
+    const std::vector<double> before(volumes.begin(), volumes.end());
+    Round round(kernel, positions, points, want, workers);
+    for (int k = 0; k < kRounds; ++k) round.improve(volumes);
+    for (std::size_t b = 0; b < volumes.size(); ++b)
+        volumes[b] = std::clamp(volumes[b], before[b] / kMostChange, before[b] * kMostChange);
+}
+
+} // namespace flotsam
