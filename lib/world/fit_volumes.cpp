@@ -1,18 +1,20 @@
 #include "world/fit_volumes.hpp"
 
-#include "flotsam/geometry/surface_samples.hpp"
 #include "geometry/plane_cut.hpp"
 #include "geometry/point_grid.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
 namespace flotsam {
 namespace {
 
 constexpr int kRounds = 5;
 constexpr double kInFront = 0.5;    ///< of the surface, where water lies [spacings]
+constexpr double kStep = 0.7;       ///< from one such point to the next [spacings]
 constexpr double kPatch = 0.25;     ///< edges of the surface's patches [spacings]
 constexpr double kLeastSeen = 1e-3; ///< of full density: less has no say
 constexpr double kMostChange = 3.0;
@@ -60,6 +62,57 @@ std::vector<Patch> patches_of(const TriangleMesh& mesh, const VolumeFit& fit)
     for (const auto& corners : mesh.triangles)
         add_patches({mesh.vertices[corners[0]], mesh.vertices[corners[1]], mesh.vertices[corners[2]]}, size, patches);
     return patches;
+}
+
+using LatticePoint = std::array<std::int32_t, 3>;
+
+/// Points of a lattice that may lie in front of the surface under which the samples are, each once.
+std::vector<LatticePoint> lattice_near(std::span<const Vec3d> samples, double step, double reach, int dimensions)
+{
+    std::vector<LatticePoint> near;
+    for (const Vec3d& sample : samples) {
+        std::array<std::int32_t, 3> low{}, high{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double at = sample[static_cast<Eigen::Index>(axis)];
+            if (axis == 1 && dimensions == 2) continue;
+            low[axis] = static_cast<std::int32_t>(std::ceil((at - reach) / step));
+            high[axis] = static_cast<std::int32_t>(std::floor((at + reach) / step));
+        }
+        for (std::int32_t x = low[0]; x <= high[0]; ++x)
+            for (std::int32_t y = low[1]; y <= high[1]; ++y)
+                for (std::int32_t z = low[2]; z <= high[2]; ++z)
+                    if ((step * Vec3d(x, y, z) - sample).squaredNorm() <= reach * reach) near.push_back({x, y, z});
+    }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    return near;
+}
+
+/// Half a spacing in front of the solid's surface, one per 0.7 spacings squared: the points of a lattice that lie about
+/// there, moved along the way to the surface. Around edges they lie on an arc.
+std::vector<Vec3d> points_in_front(const SurfaceQuery& solid, const VolumeFit& fit, std::span<const Vec3d> samples,
+                                   const Workers& workers)
+{
+    const double d = fit.particle_spacing, step = kStep * d, away = kInFront * d;
+    const double reach = away + 0.5 * step + 0.8 * d; // to the nearest sample, two thirds of a spacing deep
+    std::optional<SurfaceQuery> in_plane;
+    if (fit.dimensions == 2) in_plane.emplace(ribbon(cut_at_y0(solid.mesh()), 10.0 * d));
+    const SurfaceQuery& surface = in_plane ? *in_plane : solid;
+    const std::vector<LatticePoint> lattice = lattice_near(samples, step, reach, fit.dimensions);
+    std::vector<Vec3d> points(lattice.size());
+    std::vector<std::uint8_t> is_in_front(lattice.size(), 0);
+    workers.for_each(lattice.size(), [&](std::size_t k) {
+        const Vec3d at = step * Vec3d(lattice[k][0], lattice[k][1], lattice[k][2]);
+        const SurfaceQuery::Closest closest = surface.closest(at);
+        if (std::abs(closest.distance - away) > 0.5 * step || solid.inside(at)) return;
+        points[k] = closest.point + away / closest.distance * (at - closest.point);
+        is_in_front[k] = surface.closest(points[k]).distance > 0.9 * away; // else something else is there
+    });
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < points.size(); ++k)
+        if (is_in_front[k] != 0) points[count++] = points[k];
+    points.resize(count);
+    return points;
 }
 
 /// The field F(r) / r: along the way from a point, with the kernel at the point as its divergence.
@@ -162,12 +215,7 @@ class Round {
 void fit_volumes(const SurfaceQuery& solid, const VolumeFit& fit, std::span<const Vec3d> positions,
                  std::span<double> volumes, const Workers& workers)
 {
-    SurfaceSampleSettings in_front;
-    in_front.spacing = 0.7 * fit.particle_spacing;
-    in_front.inset = kInFront * fit.particle_spacing;
-    in_front.dimensions = fit.dimensions;
-    in_front.solid = SurfaceSampleSettings::Solid::outside;
-    const std::vector<Vec3d> points = sample_surface(solid, in_front, workers).positions;
+    const std::vector<Vec3d> points = points_in_front(solid, fit, positions, workers);
     const Kernel kernel(fit.kernel, fit.particle_spacing, fit.dimensions);
     const std::vector<double> want = seen_of_solid(solid.mesh(), fit, kernel, points, workers);
     const std::vector<double> before(volumes.begin(), volumes.end());
