@@ -94,6 +94,11 @@ TEST_CASE("bodies let go under water carry their added mass", "[validation][case
     check_case("release_2d");
 }
 
+TEST_CASE("a sphere that is moved to and fro has its added mass", "[validation][cases]")
+{
+    check_case("added_mass");
+}
+
 TEST_CASE("a disc and a box heave with their periods", "[validation][cases]")
 {
     check_case("disc_heave");
