@@ -283,7 +283,7 @@ void run_still_water(const ValidationOptions& options, ValidationResult& result)
 constexpr std::array kCases = {
     Case{"still_water", "statics", "Water at rest in a tank", 25.0, 40.0, run_still_water},
     Case{"drafts_2d", "statics", "Drafts of a box and a disc in two dimensions", 60.0, 500.0, run_drafts_2d},
-    Case{"drafts_3d", "statics", "Drafts of a box, a sphere and a cylinder", 0.0, 900.0, run_drafts_3d},
+    Case{"drafts_3d", "statics", "Drafts of a box, a sphere and a cylinder", 0.0, 800.0, run_drafts_3d},
     Case{"vessel", "statics", "Drafts of an open boat of sheet metal", 40.0, 150.0, run_vessel},
     Case{"square_log", "statics", "The angle at which a square log floats", 40.0, 200.0, run_square_log},
     Case{"stability", "statics", "Which boxes float upright", 30.0, 40.0, run_stability},
