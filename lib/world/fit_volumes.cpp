@@ -15,7 +15,7 @@ namespace {
 constexpr int kRounds = 5;
 constexpr double kInFront = 0.5;    ///< of the surface, where water lies [spacings]
 constexpr double kStep = 0.7;       ///< from one such point to the next [spacings]
-constexpr double kPatch = 0.25;     ///< edges of the surface's patches [spacings]
+constexpr double kPatch = 0.35;     ///< longest edge of a patch of the surface [spacings]
 constexpr double kLeastSeen = 1e-3; ///< of full density: less has no say
 constexpr double kMostChange = 3.0;
 
@@ -24,20 +24,27 @@ struct Patch {
     Vec3d middle, area;
 };
 
+/// Cut along its shortest edge into strips, and these again, until no edge is longer than `size`: slivers fall into few
+/// parts.
 void add_patches(const std::array<Vec3d, 3>& triangle, double size, std::vector<Patch>& patches)
 {
-    const Vec3d &a = triangle[0], ab = triangle[1] - a, ac = triangle[2] - a;
-    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-    const int n = std::max(1, static_cast<int>(std::ceil(longest / size)));
-    const Vec3d area = 0.5 / (n * n) * ab.cross(ac);
-    const auto add = [&](int i, int j, double inside) {
-        patches.push_back({a + (i + inside) / n * ab + (j + inside) / n * ac, area});
-    };
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; i + j < n; ++j) {
-            add(i, j, 1.0 / 3.0);
-            if (i + j < n - 1) add(i, j, 2.0 / 3.0);
-        }
+    const auto length = [&](std::size_t k) { return (triangle[(k + 1) % 3] - triangle[k]).norm(); };
+    const std::array<double, 3> edges{length(0), length(1), length(2)};
+    const auto shortest = static_cast<std::size_t>(std::min_element(edges.begin(), edges.end()) - edges.begin());
+    const double longest = *std::max_element(edges.begin(), edges.end());
+    const Vec3d &a = triangle[shortest], &b = triangle[(shortest + 1) % 3], &tip = triangle[(shortest + 2) % 3];
+    if (!(longest > size)) {
+        patches.push_back({(a + b + tip) / 3.0, 0.5 * (b - a).cross(tip - a)});
+        return;
+    }
+    const int strips = static_cast<int>(std::ceil(1.5 * longest / size));
+    for (int k = 0; k < strips; ++k) {
+        const double low = static_cast<double>(k) / strips, high = (k + 1.0) / strips;
+        const Vec3d p = a + low * (tip - a), q = b + low * (tip - b), r = b + high * (tip - b),
+                    s = a + high * (tip - a);
+        add_patches({p, q, r}, size, patches);
+        if (k + 1 < strips) add_patches({p, r, s}, size, patches);
+    }
 }
 
 void add_patches(const CutLine& line, double size, std::vector<Patch>& patches)
@@ -59,8 +66,8 @@ std::vector<Patch> patches_of(const TriangleMesh& mesh, const VolumeFit& fit)
         for (const CutLine& line : cut_at_y0(mesh)) add_patches(line, size, patches);
         return patches;
     }
-    for (const auto& corners : mesh.triangles)
-        add_patches({mesh.vertices[corners[0]], mesh.vertices[corners[1]], mesh.vertices[corners[2]]}, size, patches);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        add_patches({mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)}, size, patches);
     return patches;
 }
 
