@@ -10,16 +10,6 @@ namespace {
 
 using Type = SceneJoint::Type;
 
-btScalar to_scalar(double value)
-{
-    return static_cast<btScalar>(value);
-}
-
-btQuaternion to_bullet(const Quatd& q)
-{
-    return {to_scalar(q.x()), to_scalar(q.y()), to_scalar(q.z()), to_scalar(q.w())};
-}
-
 /// In 2-D a ball turns about y.
 bool turns_about_axis(const SceneJoint& joint)
 {
@@ -115,9 +105,7 @@ void Articulation::add_base(const SceneFile& scene, const SceneArticulation& art
     const PreparedBody& body = prepared.bodies[*base];
     body_ = std::make_unique<btMultiBody>(joints, to_scalar(body.mass), to_bullet(body.inertia), false, false);
     body_->setBaseWorldTransform(to_bullet(body.start));
-    Link& link = links_.emplace_back();
-    link.body = *base;
-    link.mass = body.mass;
+    links_.emplace_back().body = *base;
 }
 
 void Articulation::add_link(const SceneFile& scene, std::size_t joint, const PreparedScene& prepared)
@@ -137,7 +125,6 @@ void Articulation::add_link(const SceneFile& scene, std::size_t joint, const Pre
     const btVector3 axis = to_bullet(to_link * of.axis), to_pivot = to_bullet(from.to_body(of.point)),
                     to_center = to_bullet(to_link * (body.start.position - of.point)),
                     inertia = to_bullet(body.inertia);
-    link.mass = body.mass;
     const btScalar mass = to_scalar(body.mass);
     if (of.type == Type::slider)
         body_->setupPrismatic(link.number, mass, inertia, parent_number, turn, axis, to_pivot, to_center, true);
@@ -227,7 +214,7 @@ Wrench Articulation::momentum(const Link& link) const
 Wrench Articulation::own_load(const Link& link, const FluidWorld& fluid, double dt) const
 {
     Wrench load = (momentum(link) - link.before) * (1.0 / dt) - fluid.fluid_wrench(static_cast<int>(link.body));
-    load.linear -= link.mass * from_bullet(world_.getGravity());
+    load.linear -= inertia_of(*body_, link.number + 1, Pose()).mass * from_bullet(world_.getGravity());
     return load.seen_at(link.center) - contact_impulse(*link.collider, world_) * (1.0 / dt);
 }
 

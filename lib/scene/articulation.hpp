@@ -46,7 +46,6 @@ class Articulation {
     struct Link {
         std::size_t body = 0;              ///< of the scene, and of the fluid
         int number = -1;                   ///< Bullet's; -1: the base
-        double mass = 0.0;                 ///< [kg]
         std::optional<std::size_t> joint;  ///< of the scene; none: the base
         std::optional<std::size_t> parent; ///< place in links_; none: the world
         SceneJoint of;                     ///< its joint, if it has one

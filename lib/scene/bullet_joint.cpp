@@ -10,11 +10,6 @@ namespace {
 
 using Type = SceneJoint::Type;
 
-btScalar to_scalar(double value)
-{
-    return static_cast<btScalar>(value);
-}
-
 /// The joint's frame in the world as the scene starts: z is its axis, and in 2-D y or x is the world's y.
 btTransform start_frame(const SceneJoint& joint)
 {

@@ -11,11 +11,6 @@ namespace {
 /// Margins round corners off and lift bodies from each other; this much of the size is not seen.
 constexpr double kMarginOfSize = 1e-3;
 
-btScalar to_scalar(double value)
-{
-    return static_cast<btScalar>(value);
-}
-
 template <class BulletShape>
 BulletShape* keep(std::unique_ptr<BulletShape> shape, double size, BulletShapes& into)
 {
@@ -129,11 +124,14 @@ btVector3 to_bullet(const Vec3d& v)
     return {to_scalar(v.x()), to_scalar(v.y()), to_scalar(v.z())};
 }
 
+btQuaternion to_bullet(const Quatd& q)
+{
+    return {to_scalar(q.x()), to_scalar(q.y()), to_scalar(q.z()), to_scalar(q.w())};
+}
+
 btTransform to_bullet(const Pose& pose)
 {
-    const Quatd& q = pose.orientation;
-    return btTransform(btQuaternion(to_scalar(q.x()), to_scalar(q.y()), to_scalar(q.z()), to_scalar(q.w())),
-                       to_bullet(pose.position));
+    return btTransform(to_bullet(pose.orientation), to_bullet(pose.position));
 }
 
 Vec3d from_bullet(const btVector3& v)

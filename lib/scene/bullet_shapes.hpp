@@ -23,7 +23,12 @@ btCollisionShape* add_body_shape(const PreparedBody& body, bool moves, BulletSha
 /// the triangles of a mesh.
 btCollisionShape* add_wall_shape(const SceneWall& wall, const PreparedWall& prepared, BulletShapes& into);
 
+[[nodiscard]] inline btScalar to_scalar(double value)
+{
+    return static_cast<btScalar>(value);
+}
 [[nodiscard]] btVector3 to_bullet(const Vec3d& v);
+[[nodiscard]] btQuaternion to_bullet(const Quatd& q);
 [[nodiscard]] btTransform to_bullet(const Pose& pose);
 [[nodiscard]] Vec3d from_bullet(const btVector3& v);
 [[nodiscard]] Pose from_bullet(const btTransform& transform);

@@ -8,18 +8,6 @@ namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-std::size_t joint_named(const JsonNode& node, const SceneFile& scene)
-{
-    const std::string name = node.text();
-    std::vector<std::string> names;
-    for (const SceneJoint& joint : scene.joints) names.push_back(joint.name);
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (names.empty()) node.refuse_value("must be the name of a joint, and the scene has none");
-    if (found == names.end())
-        node.refuse_value("must be the name of a joint, the nearest is \"" + nearest_word(name, names) + "\"");
-    return static_cast<std::size_t>(found - names.begin());
-}
-
 /// Bodies of a multibody are moved by its joints alone.
 void refuse_unfit_bodies(const JsonNode& node, const SceneJoint& joint, const SceneFile& scene)
 {
@@ -113,7 +101,7 @@ SceneArticulation read_articulation(const JsonNode& node, const SceneFile& scene
     const std::vector<JsonNode> names = object.required("joints").entries();
     if (names.empty()) object.required("joints").refuse("must name at least one joint");
     for (const JsonNode& name : names) {
-        const std::size_t joint = joint_named(name, scene);
+        const std::size_t joint = read_number_of_name(name, scene.joints, "joint");
         if (is_taken[joint]) name.refuse_value("must be in one articulation, and once");
         is_taken[joint] = true;
         refuse_unfit_bodies(name, scene.joints[joint], scene);

@@ -21,22 +21,10 @@ Type read_type(const JsonNode& node)
     return std::array{Type::hinge, Type::slider, Type::ball}[static_cast<std::size_t>(found - words.begin())];
 }
 
-std::size_t read_body_number(const JsonNode& node, const std::vector<SceneBody>& bodies)
-{
-    const std::string name = node.text();
-    std::vector<std::string> names;
-    for (const SceneBody& body : bodies) names.push_back(body.name);
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (names.empty()) node.refuse_value("must be the name of a body, and the scene has none");
-    if (found == names.end())
-        node.refuse_value("must be the name of a body, the nearest is \"" + nearest_word(name, names) + "\"");
-    return static_cast<std::size_t>(found - names.begin());
-}
-
 void read_bodies(const JsonObject& object, const std::vector<SceneBody>& bodies, SceneJoint& joint)
 {
-    joint.a = read_body_number(object.required("a"), bodies);
-    if (const auto b = object.find("b")) joint.b = read_body_number(*b, bodies);
+    joint.a = read_number_of_name(object.required("a"), bodies, "body");
+    if (const auto b = object.find("b")) joint.b = read_number_of_name(*b, bodies, "body");
     const auto is_dynamic = [&](std::size_t k) { return bodies[k].motion == SceneBody::Motion::dynamic; };
     if (joint.a == joint.b)
         object.node().refuse("joins body \"" + bodies[joint.a].name + "\" to itself, and must join two bodies");
