@@ -10,6 +10,7 @@
 #include "geometry/basin_query.hpp"
 #include "sph/contacts.hpp"
 #include "sph/forces/packing_stress.hpp"
+#include "sph/forces/recent_slip.hpp"
 #include "sph/forces/viscosity.hpp"
 #include "sph/pressure/complementarity_solver.hpp"
 #include "sph/pressure/pressure_system.hpp"
@@ -117,6 +118,7 @@ struct FluidWorld::Impl {
     ContactBuilder contact_builder;
     Contacts contacts;
     Viscosity viscosity;
+    RecentSlip slip;
     PackingStress packing_stress;
     RelaxedJacobi relaxed_jacobi;
     Mprgp mprgp;

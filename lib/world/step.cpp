@@ -176,7 +176,12 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
     }
     if (settings.packing_relief > 0.0) {
         const PackingStressSettings packing{settings.packing_relief, settings.rest_density, settings.dimensions};
-        packing_stress.relieve(packing, dt, fluid, fluid_pairs, boundary_pairs, workers, scratch, predicted);
+        answer.assign(owners(), Twist{});
+        for (std::size_t k = 0; k < bodies.size(); ++k) answer[walls.size() + k] = states[k].start;
+        slip.update(dt, spacing(), settings.gravity.norm(), fluid, contacts, walls.size(), centers, answer, workers);
+        packing_stress.relieve(packing, dt, fluid, fluid_pairs,
+                               {boundary, boundary_pairs, contacts, centers, slip.shares()}, workers, scratch,
+                               predicted, total);
     }
     rubbed = total;
     predict_twists(port);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "flotsam/sph/boundary_state.hpp"
 #include "flotsam/sph/fluid_state.hpp"
 #include "flotsam/sph/neighbourhood.hpp"
+#include "sph/contacts.hpp"
 #include "sph/forces/force_scratch.hpp"
 
 #include <cstdint>
@@ -14,6 +16,15 @@ struct PackingStressSettings {
     double relief = 0.0;          ///< share of the stress that is taken away, 0 to 1
     double rest_density = 1000.0; ///< [kg/m^3]
     int dimensions = 3;
+};
+
+/// Walls and bodies, as the water feels them.
+struct TouchedSolids {
+    const BoundaryState& boundary;
+    const Pairs& pairs; ///< of particles with samples
+    const Contacts& contacts;
+    std::span<const Vec3d> centers; ///< of each owner [m]
+    std::span<const Scalar> moving; ///< of each owner: RecentSlip's shares
 };
 
 /// Takes away the stress by which a packing of particles resists a change of shape, and water does not.
@@ -33,27 +44,40 @@ struct PackingStressSettings {
 /// 0.75 takes 0.75 to 1 of it; with more, still water would not come to rest.) The work is what the packing takes out
 /// of the flow and turns into heat; the dissipation of velocity noise (Viscosity) takes the heat away.
 ///
-/// Particles that touch boundary samples count as T = 0: the layers along a solid are anisotropic at rest, by up to
-/// 0.2 p, and taking that away would stir the water. In the layer behind them it is 0.004 p, and since p grows with the
-/// depth, even that would drive a current along the walls, which grows for minutes. What is taken away there is only
-/// what opposes the flow: the part of <T> along the strain rate D of the particle, D (<T> : D) / (D : D), which the
-/// shear of a current along a wall does not have. Farther away a packing at rest has less than 0.001 p.
+/// Particles that touch the samples of a solid at rest count as T = 0: the stress of these layers is small, but since p
+/// grows with the depth, even 0.01 p would drive a current along the solid, which grows for minutes. In the layer
+/// behind them only what opposes the flow is taken away, for the same reason: the part of <T> along the strain rate D
+/// of the particle, D (<T> : D) / (D : D), which the shear of a current along a wall does not have. Farther away a
+/// packing at rest has less than 0.001 p.
 ///
-/// |<T>| is at most 0.03 p: in flows it is 0.003 to 0.005 p, and near a free surface, where half of the neighbours are
-/// missing, the virial is no measure of the stress.
+/// Along a body that moves against the water (RecentSlip) the layer that touches it is strained like the rest, by x / R
+/// when a body of radius R has moved by x, and bears up to 0.1 p: it would hold the body like a spring, and yield only
+/// after a tenth of a spacing. Its T counts the pairs with samples too, of which there are rho0 V_b / m, with p_i
+/// alone; of it the part is taken away that stands across the surface, n T n (n n - I / dim) dim / (dim - 1), n the
+/// normal (what lies along it only damps, and holds currents back); the mean is over particles that touch samples; and
+/// the samples take what the water that is not behind them would: each counts as 1.44 rho0 V_b / m particles with T_b =
+/// <T>_i. (1.44: so that a layer of samples bears a uniform T like water on a lattice does; 1.36 to 1.49 for both
+/// kernels in 2-D and 3-D.) What is taken away is a force within the step that pairs exert on each other, so that no
+/// balance of a body at rest depends on it.
 ///
-/// **Source:** Irving & Kirkwood 1950 for the virial; bench_strength has what it does.
+/// |<T>| is at most 0.03 p, 0.12 p along moving bodies: in flows it is 0.003 to 0.005 p, and near a free surface, where
+/// half of the neighbours are missing, the virial is no measure of the stress.
+///
+/// **Source:** Irving & Kirkwood 1950 for the virial; bench_strength and bench_release have what it does.
 class PackingStress {
   public:
-    /// Adds dt a_i to `velocity` (which is not read: the state's velocities are).
+    /// Adds dt a_i to `velocity` (which is not read: the state's velocities are) and the reaction impulses about the
+    /// solids' centres to `owner_impulses` [N s], [N m s].
     void relieve(const PackingStressSettings& settings, double dt, const FluidState& fluid,
-                 const SelfPairs& fluid_pairs, const Pairs& boundary_pairs, const Workers& workers,
-                 const ForceScratch& scratch, std::span<Vec4> velocity);
+                 const SelfPairs& fluid_pairs, const TouchedSolids& solids, const Workers& workers,
+                 const ForceScratch& scratch, std::span<Vec4> velocity, std::span<Wrench> owner_impulses);
 
   private:
-    void find_second_layer(const SelfPairs& fluid_pairs, const Pairs& boundary_pairs, const Workers& workers);
+    void find_layers(const SelfPairs& fluid_pairs, const TouchedSolids& solids, const Workers& workers);
 
     std::vector<std::uint8_t> second_layer_; ///< 1: a neighbour touches boundary samples
+    std::vector<std::uint8_t> moved_;        ///< of those that touch bodies that move: the share of these, 1 to 255
+    std::vector<Wrench> reactions_;
 };
 
 } // namespace flotsam

@@ -4,6 +4,7 @@
 #include "support/catch.hpp"
 
 #include <random>
+#include <vector>
 
 using namespace flotsam;
 
@@ -54,8 +55,8 @@ struct Block {
     {
         std::vector<Vec4> a, b, c, d;
         change.assign(size(), Vec4::Zero());
-        PackingStress().relieve({1.0, kWater, dimensions}, dt, fluid, pairs, none, Workers(2), {&a, &b, &c, &d},
-                                change);
+        PackingStress().relieve({1.0, kWater, dimensions}, dt, fluid, pairs,
+                                {BoundaryState{}, none, Contacts{}, {}, {}}, Workers(2), {&a, &b, &c, &d}, change, {});
     }
     /// Acceleration of the pressure forces alone.
     [[nodiscard]] Vec3d pressure_push(std::size_t i) const
@@ -140,4 +141,59 @@ TEST_CASE("a lattice without strain and water without pressure feel no relief", 
     Block dry(3, 1.05, 0.2);
     dry.relieve(1.0);
     for (const Vec4& change : dry.change) CHECK(change.isZero(0));
+}
+
+TEST_CASE("what the relief takes from water along a moving body, the body gets", "[sph]")
+{
+    const int dimensions = GENERATE(2, 3);
+    CAPTURE(dimensions);
+    Block block(dimensions, 1.05, 0.2);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<Scalar> pressure(0, 2000);
+    for (Scalar& p : block.fluid.pressure) p = pressure(random);
+    // A wall (owner 0) under one half of the block and a body (owner 1) under the other.
+    BoundaryState boundary;
+    for (int a = 0; a < 2 * kCells; ++a)
+        for (int b = 0; b < (dimensions == 2 ? 1 : 2 * kCells); ++b) {
+            const double x = 0.5 * kSpacing * a, y = dimensions == 2 ? 0.0 : 0.5 * kSpacing * b;
+            boundary.position.emplace_back(static_cast<Scalar>(x), static_cast<Scalar>(y),
+                                           static_cast<Scalar>(-kSpacing), Scalar(0));
+            boundary.volume.push_back(static_cast<Scalar>(0.5 * std::pow(kSpacing, dimensions)));
+            boundary.velocity.emplace_back(Vec4::Zero());
+            boundary.owner.push_back(a < kCells ? 0 : 1);
+        }
+    const std::vector<Vec3d> centers = {Vec3d::Zero(), Vec3d(0.3, 0.1, -0.1)};
+    const Workers workers(2);
+    const QuinticSpline kernel(2.7 * kSpacing, dimensions);
+    const CellGrid grid =
+        CellGrid::around(block.fluid.position, boundary.position, static_cast<double>(kernel.support()), 1 << 18);
+    CellLists lists;
+    lists.build(grid, boundary.position, workers);
+    Pairs pairs;
+    NeighbourSearch().find(kernel, grid, lists, block.fluid.position, false, {}, workers, pairs);
+    Contacts contacts;
+    ContactBuilder().build(pairs, block.fluid.position, boundary, centers, kWater, workers, contacts);
+
+    const Scalar moving = GENERATE(Scalar(0), Scalar(0.5), Scalar(1));
+    CAPTURE(moving);
+    const std::vector<Scalar> shares = {0, moving};
+    std::vector<Wrench> impulses(2);
+    std::vector<Vec4> a, b, c, d;
+    block.change.assign(block.size(), Vec4::Zero());
+    PackingStress().relieve({1.0, kWater, dimensions}, 1.0, block.fluid, block.pairs,
+                            {boundary, pairs, contacts, centers, shares}, workers, {&a, &b, &c, &d}, block.change,
+                            impulses);
+    CHECK(impulses[0].linear.isZero(0.0));
+    Vec3d linear = impulses[1].linear, angular = impulses[1].seen_at(centers[1]).angular;
+    double size = 0.0;
+    for (std::size_t i = 0; i < block.size(); ++i) {
+        const Vec3d part = block.fluid.particle_mass * block.change[i].head<3>().cast<double>();
+        linear += part;
+        angular += block.at(i).cross(part);
+        size += part.norm();
+    }
+    REQUIRE(size > 0.0);
+    CHECK((impulses[1].linear.norm() > 1e-3 * size) == (moving > 0));
+    CHECK(linear.norm() < 1e-6 * size);
+    CHECK(angular.norm() < 1e-6 * size * kCells * kSpacing);
 }
