@@ -5,6 +5,14 @@
 #include <algorithm>
 
 namespace flotsam {
+namespace {
+
+bool stands(const GuardedMotion& motion)
+{
+    return motion.twist.linear.isZero(0.0) && motion.twist.angular.isZero(0.0);
+}
+
+} // namespace
 
 void WallGuard::build(const std::vector<GuardedSurface>& surfaces, double particle_spacing, const Workers& workers)
 {
@@ -176,11 +184,17 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
         const double beyond = (b - at).dot(hit->normal);
         b += (clearance_ - beyond) * hit->normal;
         if (bounce == kMaxBounces) {
-            // No way found in a narrow place: go with the surface from where the particle was.
-            b = solid.after.to_world(solid.before.to_body(a));
-            give(hit->surface, at, particle_mass * (v - wall_velocity));
-            v = wall_velocity;
-            if (first_hit(a, b, motion)) ++out.report.leaked;
+            // No way found in a narrow place: go with the surface from where the particle was. Of a wall and a body
+            // that closes on it, stay in front of the wall: a particle in the skin of the body is not lost.
+            const auto go_with = [&](std::size_t k) { return motion[k].after.to_world(motion[k].before.to_body(a)); };
+            const auto other = first_hit(a, go_with(hit->surface), motion);
+            if (other && stands(motion[other->surface])) stopped_by = other->surface;
+            const GuardedMotion& keeper = motion[*stopped_by];
+            b = go_with(*stopped_by);
+            const Vec3d keeper_velocity = keeper.twist.at(at - keeper.before.position);
+            give(*stopped_by, at, particle_mass * (v - keeper_velocity));
+            v = keeper_velocity;
+            if (other && !stands(keeper)) ++out.report.leaked;
         }
     }
     if (!stopped_by) return;

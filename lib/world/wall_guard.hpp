@@ -30,7 +30,8 @@ struct GuardReport {
 };
 
 /// Stops particles whose path in this step would pass through a surface: each is put back in front of it, its velocity
-/// toward the surface is taken away, and the momentum is given to the surface's owner. A cheap bound of the
+/// toward the surface is taken away, and the momentum is given to the surface's owner. One that a body squeezes against
+/// a wall stays in front of the wall, in the skin of the body, and is not counted as leaked. A cheap bound of the
 /// distance clears nearly all particles; the rest ask SurfaceQuery.
 class WallGuard {
   public:
