@@ -34,12 +34,16 @@ Json seconds_json(const StageSeconds& s)
 
 Json by_cause(const ByCause<double>& value)
 {
-    return {{"pressure", number(value.pressure)}, {"viscous", number(value.viscous)}, {"guard", number(value.guard)}};
+    return {{"pressure", number(value.pressure)},
+            {"viscous", number(value.viscous)},
+            {"packing", number(value.packing)},
+            {"guard", number(value.guard)}};
 }
 Json by_cause(const ByCause<Wrench>& value, Vec3d Wrench::*part)
 {
     return {{"pressure", vector(value.pressure.*part)},
             {"viscous", vector(value.viscous.*part)},
+            {"packing", vector(value.packing.*part)},
             {"guard", vector(value.guard.*part)}};
 }
 

@@ -32,7 +32,7 @@ ByCause<Wrench> FluidWorld::Impl::wrenches(std::size_t owner) const
     const bool is_removed = owner >= walls.size() && bodies[owner - walls.size()].mesh.empty();
     if (!(last_dt > 0.0) || owner >= guarded.size() || is_removed) return {};
     const double rate = 1.0 / last_dt;
-    return {pushed[owner] * rate, rubbed[owner] * rate, guarded[owner] * rate};
+    return {pushed[owner] * rate, rubbed[owner] * rate, relieved[owner] * rate, guarded[owner] * rate};
 }
 
 Wrench FluidWorld::Impl::hydrostatic(std::size_t body, std::optional<double> level) const
@@ -57,6 +57,7 @@ FluidForces FluidWorld::fluid_forces(int body) const
     forces.hydrostatic = impl_->hydrostatic(k, has_level ? waterline(impl_->states) : std::nullopt);
     forces.dynamic = by_cause.pressure - forces.hydrostatic;
     forces.viscous = by_cause.viscous;
+    forces.packing = by_cause.packing;
     forces.guard = by_cause.guard;
     return forces;
 }
@@ -68,7 +69,7 @@ FluidForces FluidWorld::fluid_forces(int body, const Vec3d& about) const
     const std::size_t owner = impl_->walls.size() + static_cast<std::size_t>(body);
     if (owner >= impl_->centers.size()) return forces; // before the first step
     const Vec3d arm = impl_->centers[owner] - about;
-    for (Wrench* part : {&forces.hydrostatic, &forces.dynamic, &forces.viscous, &forces.guard})
+    for (Wrench* part : {&forces.hydrostatic, &forces.dynamic, &forces.viscous, &forces.packing, &forces.guard})
         *part = part->seen_at(arm);
     return forces;
 }

@@ -70,6 +70,7 @@ void FluidWorld::Impl::book_owner(std::size_t k, ByCause<Wrench>& impulses, ByCa
     };
     book(pushed[k], impulses.pressure, work.pressure);
     book(rubbed[k], impulses.viscous, work.viscous);
+    book(relieved[k], impulses.packing, work.packing);
     book(guarded[k], impulses.guard, work.guard);
 }
 
@@ -100,7 +101,8 @@ void FluidWorld::Impl::keep_ledger(double dt, Bodies& port, StepReport& report)
             book_owner(k, out.bodies, energy.bodies);
     }
     energy.gravity = 0.5 * m * dt * g.dot(sum.velocity_before + sum.velocity_after);
-    energy.viscous = -m * sum.viscous - energy.walls.viscous - energy.bodies.viscous;
+    energy.viscous =
+        -m * sum.viscous - energy.walls.viscous - energy.bodies.viscous - energy.walls.packing - energy.bodies.packing;
     energy.compression = -m * sum.pressure - energy.walls.pressure - energy.bodies.pressure;
     energy.guard = -m * sum.guard + m * g.dot(sum.put_back) - energy.walls.guard - energy.bodies.guard;
     energy.shift = -m * g.dot(sum.shift);

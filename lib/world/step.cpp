@@ -174,6 +174,8 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
         viscosity.add(viscous, dt, fluid, boundary, fluid_pairs, boundary_pairs, centers, workers, scratch, predicted,
                       total);
     }
+    rubbed = total;
+    relieved.assign(owners(), Wrench{});
     if (settings.packing_relief > 0.0) {
         const PackingStressSettings packing{settings.packing_relief, settings.rest_density, settings.dimensions};
         answer.assign(owners(), Twist{});
@@ -181,9 +183,9 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
         slip.update(dt, spacing(), settings.gravity.norm(), fluid, contacts, walls.size(), centers, answer, workers);
         packing_stress.relieve(packing, dt, fluid, fluid_pairs,
                                {boundary, boundary_pairs, contacts, centers, slip.shares()}, workers, scratch,
-                               predicted, total);
+                               predicted, relieved);
     }
-    rubbed = total;
+    for (std::size_t k = 0; k < owners(); ++k) total[k] += relieved[k];
     predict_twists(port);
 }
 

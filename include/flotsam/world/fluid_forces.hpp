@@ -9,12 +9,14 @@ template <class Value>
 struct ByCause {
     Value pressure{}; ///< of the pressure solve, hydrostatic part and all
     Value viscous{};
-    Value guard{}; ///< of the wall guard: particles that it stopped
+    Value packing{}; ///< of packing_relief: takes away what a strained packing adds to the pressure
+    Value guard{};   ///< of the wall guard: particles that it stopped
 
     [[nodiscard]] Value total() const
     {
         Value sum = pressure;
         sum += viscous;
+        sum += packing;
         sum += guard;
         return sum;
     }
@@ -22,6 +24,7 @@ struct ByCause {
     {
         pressure += other.pressure;
         viscous += other.viscous;
+        packing += other.packing;
         guard += other.guard;
         return *this;
     }
@@ -32,10 +35,11 @@ struct FluidForces {
     Wrench hydrostatic; ///< weight of the water displaced, through the centre of buoyancy
     Wrench dynamic;     ///< what the pressure does beside it: of waves, of motion, of added mass, and the noise
     Wrench viscous;
-    Wrench guard; ///< of the wall guard: particles that it stopped
+    Wrench packing; ///< of packing_relief: takes away what the strained packing adds to the pressure of a moving body
+    Wrench guard;   ///< of the wall guard: particles that it stopped
 
     [[nodiscard]] Wrench pressure() const { return hydrostatic + dynamic; }
-    [[nodiscard]] Wrench total() const { return hydrostatic + dynamic + viscous + guard; }
+    [[nodiscard]] Wrench total() const { return hydrostatic + dynamic + viscous + packing + guard; }
 };
 
 /// What the pressure does at one boundary sample of a body, mean over the last step.

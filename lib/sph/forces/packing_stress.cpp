@@ -186,8 +186,15 @@ void PackingStress::relieve(const PackingStressSettings& settings, double dt, co
         simd::sum_deviator_pushes(fluid_pairs, at, rest, begin, end, push);
         for (std::size_t i = begin; i < end; ++i) velocity[i] += factor * push[i];
     });
+    push_samples(fluid, solids, at, rest, factor, rho0, workers, velocity, owner_impulses);
+}
+
+void PackingStress::push_samples(const FluidState& fluid, const TouchedSolids& solids, std::span<const Vec4> at,
+                                 std::span<const Vec4> rest, Scalar factor, double rest_density, const Workers& workers,
+                                 std::span<Vec4> velocity, std::span<Wrench> owner_impulses)
+{
     const Scalar sample_factor =
-        static_cast<Scalar>(2.0 * kParticlesPerSample * settings.rest_density / fluid.particle_mass) * factor;
+        static_cast<Scalar>(2.0 * kParticlesPerSample * rest_density / fluid.particle_mass) * factor;
     for (std::size_t owner = 0; owner < solids.moving.size(); ++owner) {
         if (!(solids.moving[owner] > 0)) continue;
         const std::size_t first = solids.contacts.start[owner];

@@ -74,6 +74,11 @@ class PackingStress {
 
   private:
     void find_layers(const SelfPairs& fluid_pairs, const TouchedSolids& solids, const Workers& workers);
+    /// The pairs of particles with the samples of moving bodies, for stresses <T> as simd::sum_deviator_pushes has
+    /// them.
+    void push_samples(const FluidState& fluid, const TouchedSolids& solids, std::span<const Vec4> at,
+                      std::span<const Vec4> rest, Scalar factor, double rest_density, const Workers& workers,
+                      std::span<Vec4> velocity, std::span<Wrench> owner_impulses);
 
     std::vector<std::uint8_t> second_layer_; ///< 1: a neighbour touches boundary samples
     std::vector<std::uint8_t> moved_;        ///< of those that touch bodies that move: the share of these, 1 to 255

@@ -74,6 +74,7 @@ TEST_CASE("forces by cause add up to the wrench of the step, at any point", "[wo
     CHECK((forces.total().linear - total.linear).norm() < 1e-12 * scale);
     CHECK((forces.total().angular - total.angular).norm() < 1e-12 * scale);
     if (moves) CHECK(forces.viscous.linear.norm() > 1e-3 * scale);
+    CHECK((forces.packing.linear.norm() > 1e-3 * scale) == moves);
 
     // About another point each part turns by its own force, and back again is the same.
     const Vec3d point(0.3, -0.1, 0.7);

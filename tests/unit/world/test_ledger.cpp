@@ -48,11 +48,13 @@ TEST_CASE("books that close have no error, and every entry counts", "[world][led
     for (ByCause<Wrench> Ledger::*solids : {&Ledger::walls, &Ledger::bodies}) {
         CHECK(is_wrong([&](Ledger& l) { add((l.*solids).pressure); }));
         CHECK(is_wrong([&](Ledger& l) { add((l.*solids).viscous); }));
+        CHECK(is_wrong([&](Ledger& l) { add((l.*solids).packing); }));
         CHECK(is_wrong([&](Ledger& l) { add((l.*solids).guard); }));
     }
     for (ByCause<double> EnergyLedger::*solids : {&EnergyLedger::walls, &EnergyLedger::bodies}) {
         CHECK(is_wrong([&](Ledger& l) { (l.energy.*solids).pressure += 0.01; }));
         CHECK(is_wrong([&](Ledger& l) { (l.energy.*solids).viscous += 0.01; }));
+        CHECK(is_wrong([&](Ledger& l) { (l.energy.*solids).packing += 0.01; }));
         CHECK(is_wrong([&](Ledger& l) { (l.energy.*solids).guard += 0.01; }));
     }
     for (double EnergyLedger::*entry : {&EnergyLedger::viscous, &EnergyLedger::compression, &EnergyLedger::guard,
