@@ -15,7 +15,7 @@ struct BodyState {
     Pose pose;             ///< of the centre-of-mass frame: position is the centre of mass
     Twist predicted;       ///< at the end of the step under gravity and applied forces, without the fluid
     bool responds = false; ///< dynamic; fixed and moving bodies move the water and are not moved by it
-    Twist start{};         ///< at the start of the step; moves nothing, but tells the ledger what work is done
+    Twist start{};         ///< at the start of the step: tells the ledger what work is done, packing_relief what moves
 };
 
 /// The bodies port: what the fluid needs from a rigid-body engine. World frame, SI units, wrenches and twists about
