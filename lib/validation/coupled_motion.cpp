@@ -213,7 +213,7 @@ void run_box_heave(const ValidationOptions& options, ValidationResult& result)
 constexpr std::array kCases = {
     Case{"release_2d", "coupled motion", "A disc and a square let go under water", 60.0, 100.0, run_release_2d},
     Case{"release_3d", "coupled motion", "A sphere let go under water", 0.0, 800.0, run_release_3d},
-    Case{"added_mass", "coupled motion", "A sphere moved to and fro under water", 40.0, 250.0, run_added_mass},
+    Case{"added_mass", "coupled motion", "A sphere moved to and fro under water", 25.0, 150.0, run_added_mass},
     Case{"disc_heave", "coupled motion", "Heave of a half-submerged disc", 40.0, 250.0, run_disc_heave},
     Case{"box_heave", "coupled motion", "Heave period of a box", 20.0, 100.0, run_box_heave},
 };
