@@ -13,6 +13,12 @@ namespace {
 constexpr double kSpacing = 0.02, kWater = 1000.0;
 constexpr int kCells = 24; ///< of the block, along each edge
 
+/// Sums of v, x x v and |v|.
+struct Momentum {
+    Vec3d linear = Vec3d::Zero(), angular = Vec3d::Zero();
+    double size = 0.0;
+};
+
 /// A block of particles on a lattice that is stretched along x and z, without walls.
 struct Block {
     int dimensions;
@@ -57,6 +63,18 @@ struct Block {
         change.assign(size(), Vec4::Zero());
         PackingStress().relieve({1.0, kWater, dimensions}, dt, fluid, pairs,
                                 {BoundaryState{}, none, Contacts{}, {}, {}}, Workers(2), {&a, &b, &c, &d}, change, {});
+    }
+    /// Of unit masses, by the relief.
+    [[nodiscard]] Momentum momentum_change() const
+    {
+        Momentum sum;
+        for (std::size_t i = 0; i < size(); ++i) {
+            const Vec3d part = change[i].head<3>().cast<double>();
+            sum.linear += part;
+            sum.angular += at(i).cross(part);
+            sum.size += part.norm();
+        }
+        return sum;
     }
     /// Acceleration of the pressure forces alone.
     [[nodiscard]] Vec3d pressure_push(std::size_t i) const
@@ -117,17 +135,10 @@ TEST_CASE("the relief keeps linear and angular momentum", "[sph]")
     std::uniform_real_distribution<Scalar> pressure(0, 2000);
     for (Scalar& p : block.fluid.pressure) p = pressure(random);
     block.relieve(1.0);
-    Vec3d linear = Vec3d::Zero(), angular = Vec3d::Zero();
-    double size = 0.0;
-    for (std::size_t i = 0; i < block.size(); ++i) {
-        const Vec3d part = block.change[i].head<3>().cast<double>();
-        linear += part;
-        angular += block.at(i).cross(part);
-        size += part.norm();
-    }
-    REQUIRE(size > 1.0);
-    CHECK(linear.norm() < 1e-6 * size);
-    CHECK(angular.norm() < 1e-6 * size * kCells * kSpacing);
+    const Momentum change = block.momentum_change();
+    REQUIRE(change.size > 1.0);
+    CHECK(change.linear.norm() < 1e-6 * change.size);
+    CHECK(change.angular.norm() < 1e-6 * change.size * kCells * kSpacing);
 }
 
 TEST_CASE("a lattice without strain and water without pressure feel no relief", "[sph]")
@@ -184,14 +195,11 @@ TEST_CASE("what the relief takes from water along a moving body, the body gets",
                             {boundary, pairs, contacts, centers, shares}, workers, {&a, &b, &c, &d}, block.change,
                             impulses);
     CHECK(impulses[0].linear.isZero(0.0));
-    Vec3d linear = impulses[1].linear, angular = impulses[1].seen_at(centers[1]).angular;
-    double size = 0.0;
-    for (std::size_t i = 0; i < block.size(); ++i) {
-        const Vec3d part = block.fluid.particle_mass * block.change[i].head<3>().cast<double>();
-        linear += part;
-        angular += block.at(i).cross(part);
-        size += part.norm();
-    }
+    const double mass = block.fluid.particle_mass;
+    const Momentum change = block.momentum_change();
+    const Vec3d linear = impulses[1].linear + mass * change.linear,
+                angular = impulses[1].seen_at(centers[1]).angular + mass * change.angular;
+    const double size = mass * change.size;
     REQUIRE(size > 0.0);
     CHECK((impulses[1].linear.norm() > 1e-3 * size) == (moving > 0));
     CHECK(linear.norm() < 1e-6 * size);
