@@ -25,10 +25,11 @@ void print_body(std::ostream& out, const HydrostaticsReport& report)
                        fixed(center.x(), 4) + ", " + fixed(center.y(), 4) + ", " + fixed(center.z(), 4)}});
 }
 
-void print_as_modelled(std::ostream& out, const Flotation& afloat)
+void print_as_modelled(std::ostream& out, const HydrostaticsReport& report)
 {
+    const Flotation& afloat = report.as_modelled;
     const MetacentricHeights& heights = afloat.metacentric_heights;
-    out << "\nAfloat, turned as in the file and held there:\n";
+    out << "\nAfloat, turned as in the file and held there" << (report.is_vessel ? ", its hollow dry" : "") << ":\n";
     print_table(out, {{"draft [m]", fixed(afloat.draft, 5)},
                       {"displaced volume [m^3]", significant(afloat.submerged.volume, 6)},
                       {"lowest point to centre of buoyancy, KB [m]",
@@ -41,8 +42,10 @@ void print_as_modelled(std::ostream& out, const Flotation& afloat)
                        fixed(afloat.righting_arms.x(), 5) + ", " + fixed(afloat.righting_arms.y(), 5)}});
 }
 
-void print_poses(std::ostream& out, const EquilibriumPoses& stable)
+void print_poses(std::ostream& out, const HydrostaticsReport& report)
 {
+    const EquilibriumPoses& stable = report.stable;
+    if (stable.poses.empty()) return;
     std::vector<Row> rows{{"pose", "heel [deg]", "trim [deg]", "draft [m]", "energy [J]", "least GM [m]", "stable"}};
     const auto stable_words = [](int neutral) {
         return neutral == 0 ? "yes" : neutral == 1 ? "neutral in one direction" : "neutral";
@@ -52,20 +55,22 @@ void print_poses(std::ostream& out, const EquilibriumPoses& stable)
                         fixed(pose.flotation.draft, 5),
                         significant(std::max(0.0, pose.flotation.energy - stable.poses.front().flotation.energy), 3),
                         fixed(pose.flotation.metacentric_heights.least, 5), stable_words(pose.neutral_directions)});
-    out << "\nStable poses, energy above the lowest:\n";
+    out << "\nStable poses" << (report.is_vessel ? " with its hollow open to the water" : "")
+        << ", energy above the lowest:\n";
     print_table(out, rows);
     if (stable.unconverged_starts > 0)
         out << "  note: " << stable.unconverged_starts << " of " << stable.starts << " searches did not come to rest\n";
 }
 
-void print_arms(std::ostream& out, const std::vector<RightingArm>& arms)
+void print_arms(std::ostream& out, const HydrostaticsReport& report)
 {
+    const std::vector<RightingArm>& arms = report.righting_arms;
     double largest = 0.0;
     for (const RightingArm& arm : arms) largest = std::max(largest, std::abs(arm.moment));
     const auto moment_words = [&](double moment) { // what is left by rounding is none
         return significant(std::abs(moment) > 1e-9 * largest ? moment : 0.0, 5);
     };
-    out << "\nRighting arms:\n";
+    out << "\nRighting arms" << (report.is_vessel ? ", its hollow dry" : "") << ":\n";
     std::vector<Row> rows{{"heel [deg]", "GZ [m]", "moment [N m]", "draft [m]"}};
     for (std::size_t k = 0; k < std::min(arms.size(), kMostRows); ++k)
         rows.push_back({fixed(arms[k].heel * kDegrees, 2), fixed(arms[k].arm, 5), moment_words(arms[k].moment),
@@ -80,9 +85,9 @@ void print_hydrostatics(std::ostream& out, const HydrostaticsReport& report, con
 {
     for (const std::string& note : report.notes) out << "note: " << note << "\n";
     print_body(out, report);
-    print_as_modelled(out, report.as_modelled);
-    print_poses(out, report.stable);
-    if (!report.righting_arms.empty()) print_arms(out, report.righting_arms);
+    print_as_modelled(out, report);
+    print_poses(out, report);
+    if (!report.righting_arms.empty()) print_arms(out, report);
     out << "\nIn " << directory.string() << ":\n";
     std::vector<Row> files{{"hydrostatics.json", "all of this in numbers"}, {"poses.csv", "the stable poses"}};
     for (const auto& [name, words] :

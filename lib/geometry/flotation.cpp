@@ -4,6 +4,7 @@
 #include "flotsam/geometry/mass_properties.hpp"
 #include "geometry/flotation_solver.hpp"
 #include "geometry/principal_axes.hpp"
+#include "geometry/wetted_surface.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -72,10 +73,43 @@ Attitude FlotationSolver::at(const Quatd& orientation, double level_guess) const
     FLOTSAM_ASSERT(!sinks(), "what sinks has no attitude afloat");
     const Pose pose{Vec3d::Zero(), orientation};
     const HeightRange range = height_range(mesh_, pose);
+    const double level =
+        displaced_ < whole_ ? level_of_volume(mesh_, pose, displaced_, range, level_guess) : range.high;
+    return attitude_in_water(mesh_, pose, level);
+}
+
+std::vector<char> FlotationSolver::hollows(const Quatd& orientation) const
+{
+    const WettedSurface surface(mesh_, {Vec3d::Zero(), unit(orientation)});
+    const auto level = surface.level_of_basins(surface.low());
+    return level ? surface.basins(*level) : std::vector<char>(mesh_.triangles.size(), 0);
+}
+
+std::optional<Attitude> FlotationSolver::dry_at(const Quatd& orientation, std::span<const char> hollows) const
+{
+    const Pose pose{Vec3d::Zero(), unit(orientation)};
+    const double low = height_range(mesh_, pose).low;
+    const auto draft = vessel_draft(mesh_, pose, low, displaced_);
+    if (!draft) return std::nullopt;
+    const double level = low + *draft;
+    const std::vector<char> is_dry = basins(mesh_, pose, level);
+    TriangleMesh wetted;
+    wetted.vertices = mesh_.vertices;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+        if (is_dry[t] != 0) continue;
+        const auto is_below = [&](int corner) { return pose.to_world(mesh_.corner(t, corner)).z() < level; };
+        if (!hollows.empty() && hollows[t] != 0 && (is_below(0) || is_below(1) || is_below(2))) return std::nullopt;
+        wetted.triangles.push_back(mesh_.triangles[t]);
+    }
+    return attitude_in_water(wetted, pose, level);
+}
+
+Attitude FlotationSolver::attitude_in_water(const TriangleMesh& wetted, const Pose& pose, double level) const
+{
     Attitude attitude;
-    attitude.orientation = orientation;
-    attitude.level = displaced_ < whole_ ? level_of_volume(mesh_, pose, displaced_, range, level_guess) : range.high;
-    const SubmergedMoments sum = submerged_moments(mesh_, pose, attitude.level);
+    attitude.orientation = pose.orientation;
+    attitude.level = level;
+    const SubmergedMoments sum = submerged_moments(wetted, pose, level);
     attitude.plane = waterplane_of(sum, pose);
     // The volume asked for, not the one reached: it is known to the last digit.
     const Vec3d center = Vec3d(0.0, 0.0, attitude.level) + sum.moment / displaced_;
@@ -102,6 +136,18 @@ Flotation FlotationSolver::flotation(const Attitude& attitude) const
     return result;
 }
 
+Quatd turned_by_heel(double heel, const Quatd& upright)
+{
+    return Quatd(Eigen::AngleAxisd(heel, Vec3d::UnitX())) * unit(upright);
+}
+
+RightingArm righting_arm(const FlotationSolver& solver, const Attitude& attitude, double heel)
+{
+    const Flotation afloat = solver.flotation(attitude);
+    const double arm = afloat.righting_arms.x();
+    return {heel, arm, solver.weight() * arm, afloat.draft, afloat.energy};
+}
+
 std::optional<Flotation> flotation(const FloatingBody& body, const Quatd& orientation)
 {
     const FlotationSolver solver(body);
@@ -115,15 +161,11 @@ std::vector<RightingArm> righting_arms(const FloatingBody& body, const Quatd& up
     const FlotationSolver solver(body);
     require(!solver.sinks(),
             "a body with righting arms must float, and this one is heavier than the water it displaces");
-    const Quatd start = unit(upright);
     std::vector<RightingArm> arms;
     arms.reserve(heel_angles.size());
     for (const double heel : heel_angles) {
         require(std::isfinite(heel), "heel angles must be finite [rad]", heel);
-        const Quatd turned = Quatd(Eigen::AngleAxisd(heel, Vec3d::UnitX())) * start;
-        const Flotation afloat = solver.flotation(solver.at(turned));
-        const double arm = afloat.righting_arms.x();
-        arms.push_back({heel, arm, solver.weight() * arm, afloat.draft, afloat.energy});
+        arms.push_back(righting_arm(solver, solver.at(turned_by_heel(heel, upright)), heel));
     }
     return arms;
 }

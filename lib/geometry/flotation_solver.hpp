@@ -38,14 +38,26 @@ class FlotationSolver {
     [[nodiscard]] Attitude at(const Quatd& orientation) const;
     /// The same for a unit quaternion; `level_guess`: of the water above the centre of mass [m].
     [[nodiscard]] Attitude at(const Quatd& orientation, double level_guess) const;
+    /// The triangles of hollows in water that is as high as their rims allow, or nearly: 1, others 0.
+    [[nodiscard]] std::vector<char> hollows(const Quatd& orientation) const;
+    /// With the hollows dry whose rims are above the water, as vessel_flotation says; nothing if she sinks or founders,
+    /// or water comes to one of the triangles in `hollows` (those that there are: all, or none).
+    [[nodiscard]] std::optional<Attitude> dry_at(const Quatd& orientation, std::span<const char> hollows = {}) const;
     [[nodiscard]] Flotation flotation(const Attitude& attitude) const;
 
   private:
+    /// `wetted`: what of the mesh the water comes to.
+    [[nodiscard]] Attitude attitude_in_water(const TriangleMesh& wetted, const Pose& pose, double level) const;
+
     TriangleMesh mesh_;
     Vec3d center_of_mass_;
     double displaced_;
     double weight_;
     double whole_ = 0.0;
 };
+
+/// `upright` turned by a heel [rad] about world x. Throws std::invalid_argument for a quaternion of no direction.
+[[nodiscard]] Quatd turned_by_heel(double heel, const Quatd& upright);
+[[nodiscard]] RightingArm righting_arm(const FlotationSolver& solver, const Attitude& attitude, double heel);
 
 } // namespace flotsam

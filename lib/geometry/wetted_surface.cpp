@@ -107,13 +107,15 @@ std::optional<double> vessel_draft(const TriangleMesh& closed, const Pose& pose,
 {
     require(displaced_volume >= 0.0 && std::isfinite(displaced_volume), "displaced_volume must be >= 0 m^3 and finite",
             displaced_volume);
-    constexpr int kSteps = 50, kHalvings = 50;
+    constexpr int kSteps = 50, kRounds = 60;
+    constexpr double kRounding = 1e-14;
     const WettedSurface surface(closed, pose);
     double step = (surface.high() - surface.low()) / kSteps;
     const double least_step = 1e-6 * step;
     double low = surface.low(), high = std::clamp(water_level, surface.low(), surface.high());
     // Her displacement rises with the water until that comes over a rim.
-    for (double at_high = surface.displacement(high); at_high < displaced_volume;) {
+    double below = 0.0, at_high = surface.displacement(high);
+    while (at_high < displaced_volume) {
         const double next = surface.displacement(high + step);
         if (next <= at_high) {
             step *= 0.5;
@@ -121,12 +123,18 @@ std::optional<double> vessel_draft(const TriangleMesh& closed, const Pose& pose,
             continue;
         }
         low = high;
+        below = at_high;
         high += step;
         at_high = next;
     }
-    for (int k = 0; k < kHalvings; ++k) {
-        const double middle = 0.5 * (low + high);
-        (surface.displacement(middle) < displaced_volume ? low : high) = middle;
+    // By regula falsi and halving in turn.
+    for (int round = 0; round < kRounds && high - low > kRounding * (surface.high() - surface.low()); ++round) {
+        const double share = round % 2 == 0 && at_high > below ? (displaced_volume - below) / (at_high - below) : 0.5;
+        const double level = low + std::clamp(share, 1e-3, 1.0 - 1e-3) * (high - low);
+        const double volume = surface.displacement(level);
+        (volume < displaced_volume ? low : high) = level;
+        (volume < displaced_volume ? below : at_high) = volume;
+        if (std::abs(volume - displaced_volume) <= kRounding * displaced_volume) return level - surface.low();
     }
     return high - surface.low();
 }

@@ -40,26 +40,48 @@ std::vector<double> radians(const HeelRange& range)
     return angles;
 }
 
-/// As she is turned in the file, her hollow dry; nothing for what has none or sinks.
-std::optional<double> draft_as_vessel(const FloatingBody& body)
+/// As she is turned in the file, her hollow dry; nothing for what has none, sinks or founders.
+std::optional<Flotation> as_vessel(const FloatingBody& body)
 {
-    const double low = lowest_point(body.mesh, Pose{});
-    const auto draft = vessel_draft(body.mesh, Pose{}, low, body.mass / body.water_density);
-    if (!draft || !WettedSurface(body.mesh, Pose{}).has_basin(low + *draft)) return std::nullopt;
-    return draft;
+    if (!WettedSurface(body.mesh, Pose{}).level_of_basins(lowest_point(body.mesh, Pose{}))) return std::nullopt;
+    return vessel_flotation(body, Quatd::Identity());
 }
 
 [[noreturn]] void refuse_as_sinking(const HydrostaticsRequest& request, const FloatingBody& body, double volume)
 {
-    const auto as_vessel = draft_as_vessel(body);
     std::ostringstream sentence;
     sentence << request.mesh.string() << ": it sinks: its " << body.mass << " kg in " << volume << " m^3 are "
              << body.mass / volume << " kg/m^3, and the water has " << body.water_density
              << " kg/m^3; what floats must be lighter";
-    if (as_vessel)
-        sentence << " (turned as in the file and with its hollow dry it floats, with a draft of " << *as_vessel
-                 << " m: a run has that)";
     throw InputError(sentence.str());
+}
+
+/// How a vessel floats; nothing for other bodies.
+bool report_vessel(const HydrostaticsRequest& request, const FloatingBody& body, HydrostaticsReport& report)
+{
+    const auto afloat = as_vessel(body);
+    if (!afloat) return false;
+    report.is_vessel = true;
+    report.as_modelled = *afloat;
+    report.notes.push_back("it has a hollow, which is dry as it is turned in the file and in the righting arms; the "
+                           "stable poses are those with the hollow open to the water");
+    if (auto open = stable_poses(body))
+        report.stable = std::move(*open);
+    else
+        report.notes.push_back("with its hollow open to the water it sinks: there is no such pose");
+    if (!request.heel) return true;
+    VesselArms arms = vessel_righting_arms(body, Quatd::Identity(), radians(*request.heel));
+    report.righting_arms = std::move(arms.arms);
+    report.flooding_heel = arms.flooding_heel;
+    for (const std::optional<double>& heel : arms.flooding_heel) {
+        if (!heel) continue;
+        std::ostringstream note;
+        note.precision(4);
+        note << "at a heel of " << *heel * 180.0 / std::numbers::pi
+             << " degrees water comes over its rim: there the righting arms end";
+        report.notes.push_back(note.str());
+    }
+    return true;
 }
 
 /// Poses of what has next to no mass are lost in rounding.
@@ -95,8 +117,6 @@ HydrostaticsReport report_hydrostatics(const HydrostaticsRequest& request)
     body.water_density = request.water_density;
 
     refuse_if_massless(request, body, solid.volume);
-    const auto as_modelled = flotation(body, Quatd::Identity());
-    if (!as_modelled) refuse_as_sinking(request, body, solid.volume);
     HydrostaticsReport report;
     report.version = kVersion;
     report.mesh = request.mesh;
@@ -106,13 +126,10 @@ HydrostaticsReport report_hydrostatics(const HydrostaticsRequest& request)
     report.mass = body.mass;
     report.water_density = body.water_density;
     report.center_of_mass = body.center_of_mass;
+    if (report_vessel(request, body, report)) return report;
+    const auto as_modelled = flotation(body, Quatd::Identity());
+    if (!as_modelled) refuse_as_sinking(request, body, solid.volume);
     report.as_modelled = *as_modelled;
-    if (const auto as_vessel = draft_as_vessel(body)) {
-        std::ostringstream note;
-        note << "it has a hollow: dry, and turned as in the file, its draft is " << *as_vessel
-             << " m; what follows is with the hollow open to the water";
-        report.notes.push_back(note.str());
-    }
     report.stable = *stable_poses(body);
     if (request.heel) report.righting_arms = righting_arms(body, Quatd::Identity(), radians(*request.heel));
     return report;

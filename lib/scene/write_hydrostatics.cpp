@@ -128,14 +128,18 @@ std::string report_as_json(const HydrostaticsReport& report)
                  {"density", number(report.mass / report.volume)},
                  {"water_density", number(report.water_density)},
                  {"center_of_mass", vector(report.center_of_mass)},
+                 {"vessel", report.is_vessel},
                  {"as_modelled", flotation_json(report.as_modelled)},
                  {"starts", report.stable.starts},
                  {"unconverged_starts", report.stable.unconverged_starts},
                  {"stable_poses", Json::array()},
-                 {"righting_arms", Json::array()}};
+                 {"righting_arms", Json::array()},
+                 {"flooding_heel_deg", Json::array()}};
     for (const EquilibriumPose& pose : report.stable.poses)
         json["stable_poses"].push_back(pose_json(pose, report.stable.poses.front().flotation.energy));
     for (const RightingArm& arm : report.righting_arms) json["righting_arms"].push_back(arm_json(arm));
+    for (const std::optional<double>& heel : report.flooding_heel)
+        json["flooding_heel_deg"].push_back(heel ? number(*heel * kDegrees) : Json());
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "flotsam/geometry/equilibrium_poses.hpp"
+#include "flotsam/geometry/vessel_flotation.hpp"
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -31,7 +33,9 @@ struct HydrostaticsRequest {
     std::optional<HeelRange> heel = std::nullopt;       ///< of the curve of righting arms; nothing: no curve
 };
 
-/// A body's exact hydrostatics, in water of 9.81 m/s^2.
+/// A body's exact hydrostatics, in water of 9.81 m/s^2. A vessel that floats as she is turned in the file has her
+/// hollow dry there and in her righting arms, which end where water comes over her rim; her stable poses are those with
+/// the hollow open to the water, and none where she sinks then.
 struct HydrostaticsReport {
     std::string version; ///< of flotsam
     std::filesystem::path mesh;
@@ -41,9 +45,11 @@ struct HydrostaticsReport {
     double mass = 0.0;                    ///< [kg]
     double water_density = 0.0;           ///< [kg/m^3]
     Vec3d center_of_mass = Vec3d::Zero(); ///< mesh frame [m]
-    Flotation as_modelled;                ///< at its draft, not turned from how the file has it
+    bool is_vessel = false;
+    Flotation as_modelled; ///< at its draft, not turned from how the file has it
     EquilibriumPoses stable;
-    std::vector<RightingArm> righting_arms; ///< about x from how the file has it
+    std::vector<RightingArm> righting_arms;             ///< about x from how the file has it
+    std::array<std::optional<double>, 2> flooding_heel; ///< of a vessel, as VesselArms has it [rad]
 };
 
 /// Loads and checks the mesh and computes everything that is asked for. Throws InputError for a mesh that is refused

@@ -149,20 +149,34 @@ TEST_CASE("bad input of hydrostatics is one sentence that names option and limit
     CHECK(directory.read("full/thesis.tex") == "years of work");
 }
 
-TEST_CASE("hydrostatics of an open boat name the draft with her hollow dry", "[cli][hydrostatics]")
+TEST_CASE("hydrostatics of an open boat are with her hollow dry", "[cli][hydrostatics]")
 {
     const TemporaryDirectory directory("flotsam_cli_hydrostatics_boat");
     const std::string punt = std::string("hydrostatics ") + FLOTSAM_DATA_DIR + "/meshes/punt.obj --out out ";
     // Steel of 4 mm: her bottom is 0.34 x 0.2 m, 0.5 x 0.28 m at the rim, 0.14 m up. 6 kg at 0.0713 m, by the integral
     // of length times breadth over the height.
-    const Outcome heavy = run_program(directory, punt + "--mass 6");
-    CHECK(heavy.code == 2);
-    CHECK(contains(heavy.err, "it sinks"));
-    CHECK(contains(heavy.err, "with its hollow dry it floats, with a draft of 0.0712"));
+    const Outcome heavy = run_program(directory, punt + "--mass 6 --heel 0:5:40");
+    CHECK(heavy.code == 0);
+    CHECK(contains(heavy.out, "held there, its hollow dry"));
+    CHECK(contains(heavy.out, "0.07128"));
+    CHECK(contains(heavy.out, "with its hollow open to the water it sinks"));
+    CHECK_FALSE(contains(heavy.out, "Stable poses"));
+    CHECK(contains(heavy.out, "at a heel of 29.25 degrees water comes over its rim"));
+    CHECK(contains(heavy.out, "\n  25.00 "));
+    CHECK_FALSE(contains(heavy.out, "\n  30.00 "));
+    const auto report = nlohmann::json::parse(directory.read("out/hydrostatics.json"));
+    CHECK(report["vessel"] == true);
+    CHECK(report["stable_poses"].empty());
+    CHECK(report["righting_arms"].size() == 6);
+    CHECK(report["flooding_heel_deg"][0].is_null());
+    CHECK(report["flooding_heel_deg"][1].get<double>() == Approx(29.25).margin(0.01));
     const Outcome light = run_program(directory, punt + "--density 500");
     CHECK(light.code == 0);
-    CHECK(contains(light.out, "note: it has a hollow: dry, and turned as in the file, its draft is 0.0071"));
-    CHECK_FALSE(contains(run_program(directory, punt + "--mass 30").err, "hollow")); // founders
+    CHECK(contains(light.out, "0.00711"));
+    CHECK(contains(light.out, "Stable poses with its hollow open to the water"));
+    const Outcome founders = run_program(directory, punt + "--mass 30");
+    CHECK(founders.code == 2);
+    CHECK(contains(founders.err, "it sinks"));
 }
 
 TEST_CASE("without gnuplot everything else is there and one sentence names the package", "[cli][hydrostatics]")
