@@ -11,6 +11,7 @@
 #include "sph/contacts.hpp"
 #include "sph/forces/packing_stress.hpp"
 #include "sph/forces/recent_slip.hpp"
+#include "sph/forces/skin_friction.hpp"
 #include "sph/forces/viscosity.hpp"
 #include "sph/pressure/complementarity_solver.hpp"
 #include "sph/pressure/pressure_system.hpp"
@@ -118,6 +119,7 @@ struct FluidWorld::Impl {
     ContactBuilder contact_builder;
     Contacts contacts;
     Viscosity viscosity;
+    SkinFriction skin_friction;
     RecentSlip slip;
     PackingStress packing_stress;
     RelaxedJacobi relaxed_jacobi;

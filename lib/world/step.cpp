@@ -174,12 +174,20 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
         viscosity.add(viscous, dt, fluid, boundary, fluid_pairs, boundary_pairs, centers, workers, scratch, predicted,
                       total);
     }
+    answer.assign(owners(), Twist{});
+    for (std::size_t k = 0; k < bodies.size(); ++k) answer[walls.size() + k] = states[k].start;
+    if (settings.kinematic_viscosity > 0.0 && !bodies.empty()) {
+        const SkinFrictionSettings skin{settings.kinematic_viscosity, spacing(), settings.rest_density,
+                                        settings.dimensions};
+        skin_friction.add(
+            skin, dt, fluid, boundary, boundary_pairs, contacts, walls.size(), centers, answer,
+            [&](std::span<const Wrench> impulses, std::span<Twist> answers) { respond(port, impulses, answers); },
+            workers, predicted, total);
+    }
     rubbed = total;
     relieved.assign(owners(), Wrench{});
     if (settings.packing_relief > 0.0) {
         const PackingStressSettings packing{settings.packing_relief, settings.rest_density, settings.dimensions};
-        answer.assign(owners(), Twist{});
-        for (std::size_t k = 0; k < bodies.size(); ++k) answer[walls.size() + k] = states[k].start;
         slip.update(dt, spacing(), settings.gravity.norm(), fluid, contacts, walls.size(), centers, answer, workers);
         packing_stress.relieve(packing, dt, fluid, fluid_pairs,
                                {boundary, boundary_pairs, contacts, centers, slip.shares()}, workers, scratch,
