@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 namespace flotsam::scene {
 namespace {
@@ -43,7 +44,10 @@ RunTally::RunTally(const SceneFile& scene, const PreparedScene& prepared, const 
 void RunTally::add(const StepReport& step)
 {
     add_totals(step);
-    if (world_.fluid().time() > 0.75 * scene_.duration) add_last_quarter(step);
+    if (world_.fluid().time() > 0.75 * scene_.duration)
+        add_last_quarter(step);
+    else
+        for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].velocity_before = world_.body(k).twist.linear;
 }
 
 void RunTally::add_totals(const StepReport& step)
@@ -108,7 +112,10 @@ RunReport RunTally::report() const
     report.ledger = world_.fluid().ledger();
     for (const TimeMean<Vec3d>& force : wall_forces_)
         report.wall_force_mean.push_back(force.mean().value_or(Vec3d::Zero()));
-    for (std::size_t k = 0; k < bodies_.size(); ++k) report.bodies.push_back(report_body(k));
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        report.bodies.push_back(report_body(k));
+        note_loads(k, report.bodies.back(), report.notes);
+    }
     for (std::size_t k = 0; k < joints_.size(); ++k) report.joints.push_back(report_joint(k));
     for (std::size_t k = 0; k < probes_.size(); ++k)
         report.probes.push_back(
@@ -158,6 +165,25 @@ BodyReport RunTally::report_body(std::size_t k) const
     if (!is_level(scene_.gravity)) return report;
     report.exact_draft = exact_draft(body, now.pose, report.waterline);
     return report;
+}
+
+/// Whether contacts, joints or locks bear on a body that could float: what the water and gravity do not account for in
+/// its momentum.
+void RunTally::note_loads(std::size_t k, const BodyReport& body, std::vector<std::string>& notes) const
+{
+    constexpr double kNoted = 0.05; // of the weight
+    const double seconds = bodies_[k].force.seconds();
+    if (!body.exact_draft || !(seconds > 0.0)) return;
+    const double mass = body.mass.value_or(0.0), weight = mass * scene_.gravity.norm();
+    const double risen = body.velocity.z() - bodies_[k].velocity_before.z();
+    const double load = mass * risen / seconds - body.force_fluid_mean.z() + weight;
+    if (std::abs(load) < kNoted * weight) return;
+    std::ostringstream note;
+    note.precision(3);
+    note << "bodies[" << k << "] (\"" << body.name << "\") was not afloat on its own: over the last quarter of the run "
+         << "contacts, joints or locks " << (load > 0.0 ? "held it up" : "pressed it down") << " with "
+         << std::abs(load) << " N of its weight of " << weight << " N; exact_draft is without them";
+    notes.push_back(note.str());
 }
 
 /// Of a vessel with what water is in her.

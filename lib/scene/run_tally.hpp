@@ -22,6 +22,7 @@ class TimeMean {
     {
         return seconds_ > 0.0 ? std::optional<Value>(sum_ * (1.0 / seconds_)) : std::nullopt;
     }
+    [[nodiscard]] double seconds() const { return seconds_; }
 
   private:
     Value sum_;
@@ -48,6 +49,7 @@ class RunTally {
     struct BodyMeans {
         TimeMean<Vec3d> force{Vec3d::Zero()}, torque{Vec3d::Zero()};
         TimeMean<double> draft{0.0};
+        Vec3d velocity_before = Vec3d::Zero(); ///< the last quarter of the run [m/s]
     };
     struct JointMeans {
         TimeMean<Vec3d> force{Vec3d::Zero()}, torque{Vec3d::Zero()};
@@ -57,6 +59,7 @@ class RunTally {
     void measure_drafts(double dt);
     void report_fluid(RunReport& report) const;
     [[nodiscard]] BodyReport report_body(std::size_t k) const;
+    void note_loads(std::size_t k, const BodyReport& body, std::vector<std::string>& notes) const;
     [[nodiscard]] std::optional<double> exact_draft(const PreparedBody& body, const Pose& pose,
                                                     std::optional<double> waterline) const;
     [[nodiscard]] JointReport report_joint(std::size_t k) const;

@@ -297,3 +297,17 @@ TEST_CASE("notes call bodies and walls by their names", "[scene][run]")
     REQUIRE(report.notes.size() == 1);
     CHECK(report.notes[0].find("bodies[0] (\"crate\") is thinner") == 0);
 }
+
+TEST_CASE("a body that something else holds is noted, and its exact draft is without that", "[scene][run]")
+{
+    const auto noted = [](const RunReport& report) {
+        return std::any_of(report.notes.begin(), report.notes.end(), [](const std::string& note) {
+            return note.find("was not afloat on its own: over the last quarter of the run contacts, joints or locks "
+                             "pressed it down with") != std::string::npos;
+        });
+    };
+    CHECK_FALSE(noted(ran(kCrate, {})));
+    const RunReport held = ran(kCrate, {R"(bodies.0.lock=["z"])", "bodies.0.position=[0.5,0.5,0.25]"}); // under water
+    CHECK(noted(held));
+    CHECK(held.bodies.at(0).exact_draft.has_value());
+}
