@@ -41,7 +41,8 @@ LedgerSums FluidWorld::Impl::ledger_terms(std::size_t i, double dt) const
     t.spin_before = t.position_before.cross(before);
     t.spin_after = t.position_after.cross(after);
     t.shift = wide(shift[i]);
-    t.shift_spin = t.shift.cross(advanced);
+    const Vec3d rounded = wide(place) - t.position_before - t.shift - dt * advanced;
+    t.shift_spin = (t.shift + rounded).cross(advanced);
     t.drift = wide(place) - t.position_before - t.shift - dt * mean;
     t.put_back = t.position_after - wide(place);
     t.speed_sq_before = before.squaredNorm();

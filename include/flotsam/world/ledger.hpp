@@ -66,7 +66,9 @@ struct Ledger {
     FluidTotals removed;
     Wrench gravity;                ///< impulse given to the fluid, and its moment about the origin
     ByCause<Wrench> walls, bodies; ///< impulses given by the fluid, moments about the origin
-    Vec3d shift = Vec3d::Zero();   ///< angular momentum gained by the position shift: sum of m shift x v [N m s]
+    /// Angular momentum gained by the position shift, sum of m shift x v, and as positions are rounded to single
+    /// precision [N m s].
+    Vec3d shift = Vec3d::Zero();
     EnergyLedger energy;
     double compressed = 0.0; ///< integral of max(0, rho / rho0 - 1) over the fluid, mean over time [m^3]
 
