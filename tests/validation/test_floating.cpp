@@ -34,7 +34,9 @@ void check_draft(const RunReport& report)
     REQUIRE(body.exact_draft.has_value());
     INFO("draft " << *body.draft << " m, exact " << *body.exact_draft << " m, error "
                   << (*body.draft - *body.exact_draft) / kSpacing << " spacings, tilt " << body.tilt_deg << " deg");
-    CHECK(body.velocity.norm() < 0.05); // it came to rest, but for the water's own motion
+    // It came to rest, but for the water's own motion: 10 s after the drop a disc of 0.75 goes up and down with the
+    // standing wave of its tank, at 45 to 73 mm/s (four runs that differ by millimetres or by skin friction).
+    CHECK(body.velocity.norm() < 0.08);
     // Half a spacing: where a free surface of particles lies is not known better than that.
     CHECK(std::abs(*body.draft - *body.exact_draft) < std::max(0.03 * kSize, 0.5 * kSpacing));
     CHECK(report.leaked == 0);

@@ -82,7 +82,8 @@ void SkinFriction::add(const SkinFrictionSettings& settings, double dt, const Fl
     const std::size_t owners = contacts.owners();
     if (contacts.start[walls] == contacts.particle.size()) return; // no body touches water
     find_wet_samples(fluid, boundary, boundary_pairs, contacts, walls, workers);
-    impulses_.assign(contacts.particle.size(), Vec4::Zero());
+    impulses_.resize(contacts.particle.size()); // with room for more, unlike assign
+    std::fill(impulses_.begin(), impulses_.end(), Vec4(Vec4::Zero()));
     sums_.assign(owners, Sum{});
     offered_.assign(owners, Wrench{});
     answers_.assign(owners, Twist{});
