@@ -88,11 +88,11 @@ std::vector<char> FlotationSolver::hollows(const Quatd& orientation) const
 std::optional<Attitude> FlotationSolver::dry_at(const Quatd& orientation, std::span<const char> hollows) const
 {
     const Pose pose{Vec3d::Zero(), unit(orientation)};
-    const double low = height_range(mesh_, pose).low;
-    const auto draft = vessel_draft(mesh_, pose, low, displaced_);
-    if (!draft) return std::nullopt;
-    const double level = low + *draft;
-    const std::vector<char> is_dry = basins(mesh_, pose, level);
+    const WettedSurface surface(mesh_, pose);
+    const auto found = surface.level_of_displacement(surface.low(), displaced_);
+    if (!found) return std::nullopt;
+    const double level = *found;
+    const std::vector<char> is_dry = surface.basins(level);
     TriangleMesh wetted;
     wetted.vertices = mesh_.vertices;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {

@@ -97,26 +97,17 @@ std::optional<double> WettedSurface::level_of_basins(double water_level) const
     return std::nullopt;
 }
 
-std::vector<char> basins(const TriangleMesh& closed, const Pose& pose, double water_level)
+std::optional<double> WettedSurface::level_of_displacement(double water_level, double volume) const
 {
-    return WettedSurface(closed, pose).basins(water_level);
-}
-
-std::optional<double> vessel_draft(const TriangleMesh& closed, const Pose& pose, double water_level,
-                                   double displaced_volume)
-{
-    require(displaced_volume >= 0.0 && std::isfinite(displaced_volume), "displaced_volume must be >= 0 m^3 and finite",
-            displaced_volume);
     constexpr int kSteps = 50, kRounds = 60;
     constexpr double kRounding = 1e-14;
-    const WettedSurface surface(closed, pose);
-    double step = (surface.high() - surface.low()) / kSteps;
+    double step = (high_ - low_) / kSteps;
     const double least_step = 1e-6 * step;
-    double low = surface.low(), high = std::clamp(water_level, surface.low(), surface.high());
+    double low = low_, high = std::clamp(water_level, low_, high_);
     // Her displacement rises with the water until that comes over a rim.
-    double below = 0.0, at_high = surface.displacement(high);
-    while (at_high < displaced_volume) {
-        const double next = surface.displacement(high + step);
+    double below = 0.0, at_high = displacement(high);
+    while (at_high < volume) {
+        const double next = displacement(high + step);
         if (next <= at_high) {
             step *= 0.5;
             if (step < least_step) return std::nullopt;
@@ -128,15 +119,31 @@ std::optional<double> vessel_draft(const TriangleMesh& closed, const Pose& pose,
         at_high = next;
     }
     // By regula falsi and halving in turn.
-    for (int round = 0; round < kRounds && high - low > kRounding * (surface.high() - surface.low()); ++round) {
-        const double share = round % 2 == 0 && at_high > below ? (displaced_volume - below) / (at_high - below) : 0.5;
+    for (int round = 0; round < kRounds && high - low > kRounding * (high_ - low_); ++round) {
+        const double share = round % 2 == 0 && at_high > below ? (volume - below) / (at_high - below) : 0.5;
         const double level = low + std::clamp(share, 1e-3, 1.0 - 1e-3) * (high - low);
-        const double volume = surface.displacement(level);
-        (volume < displaced_volume ? low : high) = level;
-        (volume < displaced_volume ? below : at_high) = volume;
-        if (std::abs(volume - displaced_volume) <= kRounding * displaced_volume) return level - surface.low();
+        const double found = displacement(level);
+        (found < volume ? low : high) = level;
+        (found < volume ? below : at_high) = found;
+        if (std::abs(found - volume) <= kRounding * volume) return level;
     }
-    return high - surface.low();
+    return high;
+}
+
+std::vector<char> basins(const TriangleMesh& closed, const Pose& pose, double water_level)
+{
+    return WettedSurface(closed, pose).basins(water_level);
+}
+
+std::optional<double> vessel_draft(const TriangleMesh& closed, const Pose& pose, double water_level,
+                                   double displaced_volume)
+{
+    require(displaced_volume >= 0.0 && std::isfinite(displaced_volume), "displaced_volume must be >= 0 m^3 and finite",
+            displaced_volume);
+    const WettedSurface surface(closed, pose);
+    const auto level = surface.level_of_displacement(water_level, displaced_volume);
+    if (!level) return std::nullopt;
+    return *level - surface.low();
 }
 
 } // namespace flotsam

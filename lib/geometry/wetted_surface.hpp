@@ -13,13 +13,14 @@ class WettedSurface {
   public:
     WettedSurface(const TriangleMesh& closed, const Pose& pose);
 
-    [[nodiscard]] double low() const { return low_; }   ///< lowest vertex in the world [m]
-    [[nodiscard]] double high() const { return high_; } ///< highest [m]
+    [[nodiscard]] double low() const { return low_; } ///< lowest vertex in the world [m]
     /// As flotsam::basins.
     [[nodiscard]] std::vector<char> basins(double water_level) const;
     [[nodiscard]] bool has_basin(double water_level) const;
     /// What the mesh displaces, its basins included [m^3].
     [[nodiscard]] double displacement(double water_level) const;
+    /// The water level at which she displaces `volume` [m^3], as vessel_draft has it; nothing if she sinks or founders.
+    [[nodiscard]] std::optional<double> level_of_displacement(double water_level, double volume) const;
     /// The water level, or the highest of some above it, at which there are basins. Nothing for what has none there:
     /// a solid, or a vessel that is flooded.
     [[nodiscard]] std::optional<double> level_of_basins(double water_level) const;
