@@ -4,10 +4,18 @@
 
 namespace flotsam {
 
-PointGrid::PointGrid(std::span<const Vec3d> points, double cell)
-    : inv_cell_(1.0 / cell), mask_(std::bit_ceil(points.size() + 1) * 2 - 1), starts_(mask_ + 2, 0),
-      entries_(points.size())
+void PointGrid::reserve(std::size_t points)
 {
+    starts_.reserve(std::bit_ceil(points + 1) * 2 + 1);
+    entries_.reserve(points);
+}
+
+void PointGrid::build(std::span<const Vec3d> points, double cell)
+{
+    inv_cell_ = 1.0 / cell;
+    mask_ = std::bit_ceil(points.size() + 1) * 2 - 1;
+    starts_.assign(mask_ + 2, 0);
+    entries_.resize(points.size());
     const auto bucket = [&](const Vec3d& p) { return bucket_of(key_of(cell_of(p))); };
     for (const Vec3d& p : points) ++starts_[bucket(p)];
     for (std::size_t k = 1; k < starts_.size(); ++k) starts_[k] += starts_[k - 1];

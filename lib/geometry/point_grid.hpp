@@ -13,7 +13,12 @@ namespace flotsam {
 /// Points sorted into the cells of an unbounded hashed grid. The order of visits depends on the points only.
 class PointGrid {
   public:
-    PointGrid(std::span<const Vec3d> points, double cell);
+    PointGrid() = default;
+    PointGrid(std::span<const Vec3d> points, double cell) { build(points, cell); }
+    /// Room for so many points.
+    void reserve(std::size_t points);
+    /// Replaces the points; room is kept.
+    void build(std::span<const Vec3d> points, double cell);
 
     /// Calls visit(index, squared distance) for each point within `radius` <= cell of `center`.
     template <class Visit>
@@ -73,9 +78,9 @@ class PointGrid {
             if (entries_[k].key == key) visit(entries_[k]);
     }
 
-    double inv_cell_;
-    std::uint64_t mask_;
-    std::vector<std::uint32_t> starts_;
+    double inv_cell_ = 1.0;
+    std::uint64_t mask_ = 0;
+    std::vector<std::uint32_t> starts_ = {0, 0};
     std::vector<Entry> entries_;
 };
 

@@ -44,6 +44,7 @@ void FluidWorld::remove_body(int number)
     if (owner < impl_->total.size()) impl_->total[owner] = {};
     if (!impl_->prepared) return;
     impl_->remove_samples(owner);
+    impl_->films.forget(owner);
     if (owner < impl_->guard.surfaces()) impl_->guard.change(owner, {}, impl_->spacing(), impl_->workers);
 }
 
@@ -96,6 +97,7 @@ void FluidWorld::Impl::take_in_changes(StepReport& report)
             body.query = std::make_unique<SurfaceQuery>(body.mesh);
             remove_samples(walls.size() + k);
             sample_body(k);
+            films.forget(walls.size() + k);
             guard.change(walls.size() + k, {body.query.get(), false, true}, spacing(), workers);
         }
         if (body.is_changed || has_jumped(k)) {

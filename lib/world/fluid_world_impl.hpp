@@ -20,6 +20,7 @@
 #include "world/keep_ledger.hpp"
 #include "world/sheet_screen.hpp"
 #include "world/wall_guard.hpp"
+#include "world/water_film.hpp"
 
 #include <algorithm>
 #include <array>
@@ -122,6 +123,7 @@ struct FluidWorld::Impl {
     SkinFriction skin_friction;
     RecentSlip slip;
     PackingStress packing_stress;
+    WaterFilms films;
     RelaxedJacobi relaxed_jacobi;
     Mprgp mprgp;
     SpectralGradient spectral_gradient;
@@ -134,6 +136,7 @@ struct FluidWorld::Impl {
     std::vector<Wrench> pushed;   ///< pressure impulses of each owner [N s]
     std::vector<Wrench> rubbed;   ///< viscous impulses of each owner [N s]
     std::vector<Wrench> relieved; ///< those of packing_relief [N s]
+    std::vector<Wrench> filmed;   ///< those of films between solids [N s]
     std::vector<Wrench> total;    ///< of each owner over the last step [N s]
     std::vector<Wrench> offered;  ///< total and pushed, while joints and contacts are asked about them [N s]
     std::vector<Vec4> predicted;
@@ -149,6 +152,8 @@ struct FluidWorld::Impl {
     std::vector<MaxOf> max_scratch;
     std::vector<char> reached_parts; ///< of a wall
     std::vector<Wrench> unit;
+    std::vector<FilmSolid> film_solids; ///< by owner
+    std::vector<double> film_shares;    ///< by owner
     std::vector<Twist> answer;
     std::vector<GuardedMotion> motion;
     std::vector<Wrench> guarded;
@@ -242,6 +247,7 @@ struct FluidWorld::Impl {
     void sort_particles();
     void measure_density(StepReport& report);
     void add_forces(double dt, Bodies& port, StepReport& report);
+    void fill_films(double dt, Bodies& port);
     void solve_pressure(double dt, Bodies& port, StepReport& report);
     void respond(Bodies& port, std::span<const Wrench> impulses, std::span<Twist> answers) const;
     void predict_twists(Bodies& port);

@@ -69,7 +69,7 @@ void FluidWorld::Impl::book_owner(std::size_t k, ByCause<Wrench>& impulses, ByCa
         sum += impulse.seen_at(centers[k]);
         energy += impulse.linear.dot(mean.linear) + impulse.angular.dot(mean.angular);
     };
-    book(pushed[k], impulses.pressure, work.pressure);
+    book(pushed[k] + filmed[k], impulses.pressure, work.pressure);
     book(rubbed[k], impulses.viscous, work.viscous);
     book(relieved[k], impulses.packing, work.packing);
     book(guarded[k], impulses.guard, work.guard);

@@ -193,8 +193,38 @@ void FluidWorld::Impl::add_forces(double dt, Bodies& port, StepReport& report)
                                {boundary, boundary_pairs, contacts, centers, slip.shares()}, workers, scratch,
                                predicted, relieved);
     }
-    for (std::size_t k = 0; k < owners(); ++k) total[k] += relieved[k];
+    fill_films(dt, port);
+    for (std::size_t k = 0; k < owners(); ++k) total[k] += relieved[k] + filmed[k];
     predict_twists(port);
+}
+
+/// Films know nothing of the pressures that answer them: they may kick a body, as if it were alone, by no more than can
+/// be answered within a step.
+void FluidWorld::Impl::fill_films(double dt, Bodies& port)
+{
+    constexpr double kDelay = 5.0;    // of the largest steps
+    constexpr double kMostKick = 4.0; // spacings a step
+    film_solids.clear();
+    for (const Wall& wall : walls) film_solids.push_back({wall.query.get(), Pose{}, Twist{}, wall.side, false});
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        const BodyState& state = states[k];
+        film_solids.push_back({bodies[k].query.get(), state.pose, state.start, WallSide::outside, state.responds});
+    }
+    const WaterFilmSettings film{spacing(), settings.gravity, settings.rest_density, settings.dimensions,
+                                 kDelay * settings.max_time_step};
+    films.fill(film, dt, {fluid, fluid_pairs, boundary_pairs, contacts, boundary.owner}, film_solids, guard);
+    filmed.assign(owners(), Wrench{});
+    if (films.empty()) return;
+    films.add_impulses(dt, filmed);
+    respond(port, filmed, answer);
+    film_shares.assign(owners(), 1.0);
+    for (std::size_t k = walls.size(); k < owners(); ++k) {
+        const double kick = answer[k].linear.norm();
+        film_shares[k] = std::min(1.0, kMostKick * spacing() / (dt * std::max(kick, 1e-300)));
+    }
+    films.limit(film_shares);
+    filmed.assign(owners(), Wrench{});
+    films.add_impulses(dt, filmed);
 }
 
 /// At the end of the step without pressure.

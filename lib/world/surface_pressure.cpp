@@ -55,6 +55,9 @@ class PressureSpread {
         for (const auto& [q, weight] : near_) force_[pieces_[q].triangle] -= weight * pieces_[q].normal.dot(share);
     }
 
+    /// Pressure times area of each triangle [N].
+    [[nodiscard]] std::span<double> forces() { return force_; }
+
     [[nodiscard]] std::vector<double> pressures(double width) const
     {
         std::vector<double> result(force_.size(), 0.0);
@@ -112,6 +115,7 @@ std::vector<double> FluidWorld::surface_pressure(int body) const
         weight += push.norm();
     });
     spread_one();
+    world.films.add_to_triangles(owner, spread.forces());
     return spread.pressures(dimensions == 2 ? bounds(mesh).size().y() : 1.0);
 }
 

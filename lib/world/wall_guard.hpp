@@ -40,6 +40,12 @@ class WallGuard {
     /// Replaces surface k, or adds it where k is their number; one without a query stops nothing.
     void change(std::size_t k, const GuardedSurface& surface, double particle_spacing, const Workers& workers);
 
+    /// A lower bound of the distance from a point, in the owner's frame, to surface k [m]; of no use far away.
+    [[nodiscard]] double distance_bound(std::size_t k, const Vec3d& point) const
+    {
+        return bounds_[k] ? bounds_[k]->rough_at(point) : 1e300;
+    }
+
     /// `from` and `to`: positions at both ends of the step; `to` and `velocity` are corrected. `impulses`: one per
     /// surface, about motion.before.position, added to.
     GuardReport stop(std::span<const Vec4> from, std::span<Vec4> to, std::span<Vec4> velocity,
