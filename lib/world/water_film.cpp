@@ -89,7 +89,7 @@ void WaterFilms::fill(const WaterFilmSettings& settings, double dt, const FilmWa
     if (std::none_of(solids.begin(), solids.end(), [](const FilmSolid& solid) { return solid.responds; })) return;
     find_touches(water, solids);
     for (std::size_t begin = 0, end = 0; begin < touches_.size(); begin = end) {
-        const Touch& pair = touches_[begin];
+        const Touch pair = touches_[begin]; // a copy: find_facing may make room
         while (end < touches_.size() && touches_[end].a == pair.a && touches_[end].b == pair.b) ++end;
         find_facing(pair.a, pair.b, solids, guard);
         if (facing_.empty()) continue;
