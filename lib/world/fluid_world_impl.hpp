@@ -52,7 +52,7 @@ struct BodySurface {
     std::unique_ptr<Sheet> sheet;  ///< null: it is none
     double thin_fraction = 0.0;    ///< of its surface: sampled in one layer in its middle
     bool is_changed = false;       ///< added or reshaped since the last step
-    std::optional<Pose> last_pose; ///< at the end of the last step, as the fluid had it
+    std::optional<Pose> last_pose; ///< at the end of the last step, as the fluid had it; at first where it was placed
 
     /// Radius about the centre of mass that holds all of it [m]; needs the query.
     [[nodiscard]] double reach() const
@@ -97,7 +97,8 @@ struct FluidWorld::Impl {
     double max_pressure = 0.0;  ///< of the last step; before it the hydrostatic one [Pa]
     double max_speed = 0.0;     ///< of fluid and bodies [m/s]
     double deepest_catch = 0.0; ///< water that is further down along gravity is gone [m]
-    bool prepared = false;
+    bool prepared = false;      ///< the water is placed: no wall and no water is added any more
+    bool is_settled = false;    ///< prepare has come to its end
     bool is_stepping = false;
     std::vector<std::string> notes;
 
@@ -190,6 +191,7 @@ struct FluidWorld::Impl {
     // prepare.cpp
     void prepare(Bodies& port, const std::function<void(const SettleProgress&)>& on_round = {});
     void choose_wall_sides();
+    void place_water();
     void seed_where_dry(FluidSeed seed);
     [[nodiscard]] std::vector<Vessel> find_vessels() const;
     void bail_out(const FluidSeed& seed, const std::vector<Vessel>& vessels, std::vector<char>& keep);

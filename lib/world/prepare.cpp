@@ -75,12 +75,24 @@ bool surrounds(const Aabb& water, const Aabb& body, int dimensions)
 
 void FluidWorld::Impl::prepare(Bodies& port, const std::function<void(const SettleProgress&)>& on_round)
 {
-    if (prepared) return;
-    prepared = true;
+    if (is_settled) return;
     read_bodies(settings.max_time_step, port);
     for (const BodyState& state : states)
         max_speed = std::max({max_speed, state.start.linear.norm(), state.predicted.linear.norm()});
-    choose_wall_sides();
+    if (prepared) { // the settling was broken off
+        StepReport ignored;
+        take_in_changes(ignored);
+    } else {
+        choose_wall_sides();
+        prepared = true; // what is refused has been by now
+        place_water();
+    }
+    if (settings.start == FluidWorldSettings::Start::at_rest) settle(on_round);
+    is_settled = true;
+}
+
+void FluidWorld::Impl::place_water()
+{
     cut_and_place_fluid();
     find_deepest_catch();
     sample_surfaces();
@@ -93,7 +105,7 @@ void FluidWorld::Impl::prepare(Bodies& port, const std::function<void(const Sett
     place_body_samples();
     relax(kRoundsAtStart);
     loosen_enclosed_water();
-    if (settings.start == FluidWorldSettings::Start::at_rest) settle(on_round);
+    for (std::size_t k = 0; k < bodies.size(); ++k) bodies[k].last_pose = states[k].pose;
 }
 
 void FluidWorld::Impl::choose_wall_sides()

@@ -82,7 +82,8 @@ class FluidWorld {
     /// What notes call a wall or a body; else they say "wall 0", "body 0".
     void name_wall(int wall, const std::string& name);
     void name_body(int body, const std::string& name);
-    /// Cuts, samples and relaxes now rather than in the first step; repeated calls do nothing.
+    /// Cuts, samples and relaxes now rather than in the first step; repeated calls do nothing. A call that is refused
+    /// (std::invalid_argument: the port has other bodies than the world) changes nothing.
     ///
     /// With FluidWorldSettings::Start::at_rest the water is then brought to rest, by damped steps
     ///     v <- 0.95 (v + dt (g + a)),   x <- x + dt (v + dt (g + a)) + shift,   dt = 0.45 d / sqrt(p_max / rho),
@@ -91,7 +92,7 @@ class FluidWorld {
     /// last pressure is the start of the first step's solve. Water that nothing carries, a drop in the air, waits where
     /// it is, as do single particles. What cannot come to rest (a dam about to break) flows on for as long, and a note
     /// says so. Nothing is done without gravity. Same bits for any number of threads; costs about as much as 300 steps.
-    /// `on_round`, if there is one, is called after each of them.
+    /// `on_round`, if there is one, is called after each of them; if it throws, the next call, or step, goes on.
     void prepare(Bodies& bodies, const std::function<void(const SettleProgress&)>& on_round = {});
 
     // -- stepping -------------------------------------------------------------------------------------------------

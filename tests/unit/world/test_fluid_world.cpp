@@ -142,6 +142,28 @@ TEST_CASE("no water and no wall is added once a world is prepared", "[world]")
     CHECK(fluid.add_body(mesh) == 0); // bodies come and go
 }
 
+TEST_CASE("a first step or prepare that is refused changes nothing", "[world]")
+{
+    const Vec3d edges(0.1, 1.0, 0.1);
+    FluidWorld refused = tank(plane()), other = tank(plane());
+    for (FluidWorld* fluid : {&refused, &other}) fluid->add_body(tessellate(BoxShape{edges}, kSpacing));
+    NoBodies none;
+    if (GENERATE(false, true))
+        CHECK_THROWS_AS(refused.step(0.001, none), std::invalid_argument);
+    else
+        CHECK_THROWS_AS(refused.prepare(none), std::invalid_argument);
+    refused.remove_body(0);
+    refused.add_body(tessellate(BoxShape{edges}, kSpacing));
+    other.remove_body(0);
+    other.add_body(tessellate(BoxShape{edges}, kSpacing));
+    const FreeBody box = free_box(edges, 500.0, Vec3d(0.2, 0, kDepth));
+    FreeBodies first({box, box}, plane().gravity), second({box, box}, plane().gravity);
+    refused.step(0.001, first);
+    other.step(0.001, second);
+    CHECK(refused.fluid().size() > 200);
+    CHECK(refused.state_hash() == other.state_hash());
+}
+
 TEST_CASE("what cannot be added or read is refused", "[world]")
 {
     FluidWorld fluid(plane());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 using namespace flotsam;
 using namespace flotsam::test;
@@ -125,6 +126,23 @@ TEST_CASE("whoever waits for water to come to rest is told after each round", "[
 
     FluidWorld given = tank(settings_for(Start::as_given));
     given.prepare(none, [](const SettleProgress&) { FAIL("nothing is brought to rest"); });
+}
+
+TEST_CASE("water whose way to rest is broken off goes on with it", "[world][settle]")
+{
+    FluidWorld broken_off = tank(settings_for(Start::at_rest)), alone = tank(settings_for(Start::at_rest));
+    NoBodies none;
+    const auto break_off = [](const SettleProgress& progress) {
+        if (progress.rounds == 5) throw std::runtime_error("not now");
+    };
+    CHECK_THROWS_WITH(broken_off.prepare(none, break_off), "not now");
+    CHECK_THROWS_AS(broken_off.add_block({Vec3d(0, 0, 0), Vec3d(1, 1, 1)}), std::invalid_argument);
+    int rounds = 0;
+    broken_off.prepare(none, [&](const SettleProgress&) { ++rounds; });
+    alone.prepare(none);
+    CHECK(rounds > 20);
+    CHECK(mean_speed(broken_off.fluid()) == 0.0);
+    CHECK(broken_off.state_hash() == alone.state_hash());
 }
 
 TEST_CASE("bodies stand still while water comes to rest around them", "[world][settle]")
