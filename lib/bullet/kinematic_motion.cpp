@@ -44,6 +44,8 @@ Twist KinematicMotion::plan(const btRigidBody& body, double dt)
                                            linear, angular);
         return twist_from_bullet(linear, angular);
     }
+    const Twist now = twist_from_bullet(body.getLinearVelocity(), body.getAngularVelocity());
+    if (!now.linear.allFinite() || !now.angular.allFinite()) return now; // the fluid refuses it: not to be kept
     if (!(body.getLinearVelocity() == seen_linear_) || !(body.getAngularVelocity() == seen_angular_)) {
         set_linear_ = body.getLinearVelocity();
         set_angular_ = body.getAngularVelocity();

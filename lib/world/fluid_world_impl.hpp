@@ -132,14 +132,15 @@ struct FluidWorld::Impl {
     ResponsePreconditioner preconditioner;
     WallGuard guard;
     std::vector<BodyState> states;
-    std::vector<Vec3d> centers;   ///< of each owner
-    std::vector<Twist> twists;    ///< of each owner, predicted
-    std::vector<Wrench> pushed;   ///< pressure impulses of each owner [N s]
-    std::vector<Wrench> rubbed;   ///< viscous impulses of each owner [N s]
-    std::vector<Wrench> relieved; ///< those of packing_relief [N s]
-    std::vector<Wrench> filmed;   ///< those of films between solids [N s]
-    std::vector<Wrench> total;    ///< of each owner over the last step [N s]
-    std::vector<Wrench> offered;  ///< total and pushed, while joints and contacts are asked about them [N s]
+    std::vector<BodyState> read_states; ///< as the port gave them, before they are checked
+    std::vector<Vec3d> centers;         ///< of each owner
+    std::vector<Twist> twists;          ///< of each owner, predicted
+    std::vector<Wrench> pushed;         ///< pressure impulses of each owner [N s]
+    std::vector<Wrench> rubbed;         ///< viscous impulses of each owner [N s]
+    std::vector<Wrench> relieved;       ///< those of packing_relief [N s]
+    std::vector<Wrench> filmed;         ///< those of films between solids [N s]
+    std::vector<Wrench> total;          ///< of each owner over the last step [N s]
+    std::vector<Wrench> offered;        ///< total and pushed, while joints and contacts are asked about them [N s]
     std::vector<Vec4> predicted;
     std::vector<Vec4> shift;
     /// Scratch of sorting, forces and the pressure system until they are written; between steps new_position has where

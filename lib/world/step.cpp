@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string>
 
 namespace flotsam {
 namespace {
@@ -31,6 +32,24 @@ void reorder(std::vector<T>& values, std::vector<T>& scratch, std::span<const st
     scratch.resize(values.size());
     workers.for_each(values.size(), [&](std::size_t i) { scratch[i] = values[order[i]]; });
     values.swap(scratch);
+}
+
+/// A single NaN of a body would spread through the water around it, for good.
+void require_usable(const BodyState& state, std::size_t body)
+{
+    const auto require_finite = [&](const Vec3d& v, const char* what) {
+        if (!v.allFinite())
+            require(false, "body " + std::to_string(body) + " must have a finite " + what, v.transpose());
+    };
+    require_finite(state.pose.position, "position [m]");
+    require_finite(state.start.linear, "velocity [m/s]");
+    require_finite(state.start.angular, "angular velocity [rad/s]");
+    require_finite(state.predicted.linear, "velocity at the end of the step [m/s]");
+    require_finite(state.predicted.angular, "angular velocity at the end of the step [rad/s]");
+    constexpr double kUnit = 1e-3; // wide enough for any engine's rounding
+    const Quatd& turn = state.pose.orientation;
+    if (!(std::abs(turn.norm() - 1.0) < kUnit))
+        require(false, "body " + std::to_string(body) + " must have an orientation of norm 1", turn.norm());
 }
 
 } // namespace
@@ -76,8 +95,11 @@ void FluidWorld::Impl::read_bodies(double dt, Bodies& port)
 {
     require(port.size() == bodies.size(), "the port must have the bodies that were added to the fluid world",
             port.size());
-    states.resize(bodies.size());
-    port.read(dt, states);
+    read_states.assign(bodies.size(), BodyState{});
+    port.read(dt, read_states);
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+        if (!bodies[k].mesh.empty()) require_usable(read_states[k], k); // others were removed
+    states.swap(read_states);
 }
 
 void FluidWorld::Impl::place_body_samples()

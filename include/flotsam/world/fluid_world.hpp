@@ -99,7 +99,8 @@ class FluidWorld {
     /// The largest step that settings.max_time_step, CFL and viscosity allow now [s].
     [[nodiscard]] double allowed_time_step() const;
     /// One step of `dt` seconds, > 0. The bodies get their impulses through the port; moving them is their engine's
-    /// work.
+    /// work. Throws std::invalid_argument, before anything has changed, where the port has other bodies than the world
+    /// or gives one a pose or a velocity that is not finite.
     StepReport step(double dt, Bodies& bodies);
 
     // -- reading --------------------------------------------------------------------------------------------------

@@ -1,5 +1,8 @@
 #include "bullet_scene.hpp"
+#include "flotsam/bullet/bullet_coupling.hpp"
 #include "support/catch.hpp"
+
+#include <limits>
 
 using namespace flotsam;
 using namespace flotsam::test;
@@ -119,6 +122,31 @@ TEST_CASE("a kinematic body goes on with the velocity that is set on it", "[bull
     const Vec3d end = position(body);
     for (int k = 0; k < 3; ++k) CHECK(difference(step(scene, port).at(0).predicted, {}) == 0.0);
     CHECK((position(body) - end).norm() == 0.0);
+}
+
+TEST_CASE("a velocity that is none is refused, and forgotten when it is taken back", "[bullet][kinematic]")
+{
+    const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN();
+    BulletScene scene;
+    FluidWorld fluid({});
+    BulletCoupling coupling(fluid, scene.world);
+    btRigidBody& dynamic = scene.add_box(1.0);
+    btRigidBody& kinematic = scene.add_kinematic(Vec3d(5, 0, 0));
+    coupling.add(dynamic);
+    coupling.add(kinematic);
+    for (btRigidBody* body : {&dynamic, &kinematic}) {
+        coupling.step(0.004);
+        const btVector3 before = body->getLinearVelocity();
+        body->setLinearVelocity(btVector3(nan, 0, 0));
+        CHECK_THROWS_WITH(coupling.step(0.004), Catch::Matchers::Contains("must have a finite velocity"));
+        body->setLinearVelocity(before);
+        CHECK_NOTHROW(coupling.step(0.004));
+    }
+    dynamic.applyCentralForce(btVector3(0, nan, 0));
+    CHECK_THROWS_WITH(coupling.step(0.004), Catch::Matchers::Contains("body 0 must have a finite velocity"));
+    dynamic.clearForces();
+    CHECK_NOTHROW(coupling.step(0.004));
+    CHECK(from_bullet(dynamic.getWorldTransform().getOrigin()).allFinite());
 }
 
 TEST_CASE("a kinematic body goes where the application puts it, then stands", "[bullet][kinematic]")

@@ -164,6 +164,41 @@ TEST_CASE("a first step or prepare that is refused changes nothing", "[world]")
     CHECK(refused.state_hash() == other.state_hash());
 }
 
+TEST_CASE("a body whose state is not finite is refused by its number before the water feels it", "[world]")
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+    const Vec3d edges(0.1, 1.0, 0.1);
+    FluidWorld fluid = tank(plane());
+    for (int k = 0; k < 2; ++k) fluid.add_body(tessellate(BoxShape{edges}, kSpacing));
+    const FreeBody left = free_box(edges, 500.0, Vec3d(0.1, 0, kDepth)),
+                   right = free_box(edges, 500.0, Vec3d(0.3, 0, kDepth));
+    FreeBodies bodies({left, right}, plane().gravity);
+    const bool has_stepped = GENERATE(false, true);
+    if (has_stepped) fluid.step(0.001, bodies);
+    const std::uint64_t before = fluid.state_hash();
+    const auto refused = [&](auto&& spoil, const std::string& what) {
+        const FreeBody sound = bodies.bodies[1];
+        spoil(bodies.bodies[1]);
+        CHECK_THROWS_AS(fluid.step(0.001, bodies), std::invalid_argument);
+        CHECK_THROWS_WITH(fluid.step(0.001, bodies),
+                          Catch::Matchers::Contains("body 1 must have") && Catch::Matchers::Contains(what));
+        bodies.bodies[1] = sound;
+    };
+    refused([&](FreeBody& b) { b.pose.position.z() = nan; }, "position");
+    refused([&](FreeBody& b) { b.pose.position.x() = infinite; }, "position");
+    refused([&](FreeBody& b) { b.pose.orientation = Quatd(nan, 0, 0, 0); }, ""); // its angular velocity is none either
+    refused([&](FreeBody& b) { b.pose.orientation = Quatd(2, 0, 0, 0); }, "orientation of norm 1, given 2");
+    refused([&](FreeBody& b) { b.momentum.y() = nan; }, "velocity");
+    refused([&](FreeBody& b) { b.angular_momentum.y() = infinite; }, "angular velocity");
+    CHECK(fluid.state_hash() == before);
+    fluid.step(0.001, bodies);
+    for (const Vec4& p : fluid.fluid().position) REQUIRE(p.allFinite());
+    CHECK(fluid.fluid().size() > 200);
+    fluid.remove_body(1); // nobody is asked about it any more
+    bodies.bodies[1].pose.position.x() = nan;
+    CHECK_NOTHROW(fluid.step(0.001, bodies));
+}
+
 TEST_CASE("what cannot be added or read is refused", "[world]")
 {
     FluidWorld fluid(plane());
