@@ -1,5 +1,6 @@
 #include "flotsam/core/contracts.hpp"
 #include "world/fluid_world_impl.hpp"
+#include "world/usable_mesh.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -22,7 +23,7 @@ void keep_others(std::vector<T>& values, std::span<const char> is_dropped)
 int FluidWorld::add_body(const TriangleMesh& closed_about_center_of_mass)
 {
     impl_->require_no_step();
-    require(!closed_about_center_of_mass.empty(), "a body needs a closed mesh");
+    require_solid(closed_about_center_of_mass, "a body's mesh");
     BodySurface body;
     body.mesh = closed_about_center_of_mass;
     body.name = "body " + std::to_string(body_count());
@@ -51,7 +52,7 @@ void FluidWorld::remove_body(int number)
 void FluidWorld::reshape_body(int number, const TriangleMesh& closed_about_center_of_mass)
 {
     impl_->require_no_step();
-    require(!closed_about_center_of_mass.empty(), "a body needs a closed mesh");
+    require_solid(closed_about_center_of_mass, "a body's mesh");
     BodySurface& body = impl_->body(number);
     body.mesh = closed_about_center_of_mass;
     body.is_changed = impl_->prepared;

@@ -5,6 +5,7 @@
 #include "flotsam/geometry/shapes.hpp"
 #include "flotsam/geometry/volume_samples.hpp"
 #include "world/fluid_world_impl.hpp"
+#include "world/usable_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -84,6 +85,7 @@ void FluidWorld::add_fluid_mesh(const TriangleMesh& closed, const Vec3d& velocit
     require(!impl_->prepared, "water must be added before the first step");
     require(velocity.allFinite(), "the velocity of a mesh's water must be finite [m/s]");
     impl_->require_still_if_at_rest(velocity);
+    require_solid(closed, "a mesh of water");
     const auto query = std::make_shared<SurfaceQuery>(closed);
     const auto covers = [query](const Vec3d& p) { return query->bounds().contains(p) && query->inside(p); };
     impl_->seed_where_dry({fill_mesh(*query, impl_->spacing(), impl_->settings.dimensions), velocity, true, covers});
@@ -101,7 +103,7 @@ void FluidWorld::add_particles(std::span<const Vec3d> positions, const Vec3d& ve
 int FluidWorld::add_wall(const TriangleMesh& mesh, WallSide side)
 {
     require(!impl_->prepared, "walls must be added before the first step");
-    require(!mesh.empty(), "a wall needs at least one triangle");
+    require_surface(mesh, "a wall's mesh");
     Wall wall;
     wall.mesh = mesh;
     wall.side = side;

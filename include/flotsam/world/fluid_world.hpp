@@ -61,6 +61,8 @@ class FluidWorld {
     FluidWorld& operator=(const FluidWorld&) = delete;
 
     // -- building, before the first step --------------------------------------------------------------------------
+    // Meshes are taken as they are (check_mesh repairs them); std::invalid_argument for one without triangles, with
+    // corners that are none of its vertices or are not finite, and for bodies and water whose triangles face inward.
     /// Water in a box [m]; what lies inside walls or bodies is cut away. `velocity` [m/s], here and below zero for
     /// water that starts at rest.
     void add_block(const Aabb& block, const Vec3d& velocity = Vec3d::Zero());

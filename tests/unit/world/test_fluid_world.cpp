@@ -224,6 +224,36 @@ TEST_CASE("what cannot be added or read is refused", "[world]")
     CHECK_THROWS_AS(fluid.step(0.001, none), std::invalid_argument); // the port has no such body
 }
 
+TEST_CASE("meshes that would be read beyond their ends or inside out are refused", "[world]")
+{
+    FluidWorld fluid(plane());
+    const TriangleMesh sound = tessellate(BoxShape{Vec3d(0.1, 1, 0.1)}, 1.0);
+    fluid.add_body(sound);
+    const auto refused = [&](const TriangleMesh& mesh, const std::string& why) {
+        const auto contains = Catch::Matchers::Contains(why);
+        CHECK_THROWS_AS(fluid.add_body(mesh), std::invalid_argument);
+        CHECK_THROWS_WITH(fluid.add_body(mesh), contains);
+        CHECK_THROWS_WITH(fluid.reshape_body(0, mesh), contains);
+        CHECK_THROWS_WITH(fluid.add_fluid_mesh(mesh), contains);
+    };
+    for (const int index : {-1, 8, 99999999}) {
+        TriangleMesh mesh = sound;
+        mesh.triangles[3][1] = index;
+        refused(mesh, "0 to 7, triangle 3 names vertex " + std::to_string(index));
+        CHECK_THROWS_AS(fluid.add_wall(mesh), std::invalid_argument);
+    }
+    for (const double number : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        TriangleMesh mesh = sound;
+        mesh.vertices[2].y() = number;
+        refused(mesh, "finite vertices [m], vertex 2");
+        CHECK_THROWS_AS(fluid.add_wall(mesh), std::invalid_argument);
+    }
+    refused(flipped(sound), "face outward");
+    CHECK(fluid.add_wall(flipped(sound)) == 0); // a wall may have its water on either side
+    CHECK(fluid.body_count() == 1);
+    CHECK(fluid.wall_count() == 1);
+}
+
 TEST_CASE("a world without water, walls or bodies steps", "[world]")
 {
     FluidWorld fluid(plane());

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "flotsam/geometry/triangle_mesh.hpp"
+
+#include <string_view>
+
+namespace flotsam {
+
+/// Checks a mesh that a caller hands over: there are triangles, their corners are vertices of the mesh, and these are
+/// finite. `what` begins the sentence of the std::invalid_argument ("a wall's mesh"). It costs a pass over the mesh;
+/// check_mesh does more, and repairs.
+void require_surface(const TriangleMesh& mesh, std::string_view what);
+
+/// The same, and the triangles face outward: the volume is above zero.
+void require_solid(const TriangleMesh& mesh, std::string_view what);
+
+} // namespace flotsam
