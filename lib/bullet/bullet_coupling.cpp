@@ -37,6 +37,14 @@ void before_tick_callback(btDynamicsWorld* world, btScalar dt)
     static_cast<BulletCoupling*>(world->getWorldUserInfo())->before_tick(static_cast<double>(dt));
 }
 
+/// Bullet keeps it to derived classes.
+struct PreTick : btDynamicsWorld {
+    static btInternalTickCallback of(const btDynamicsWorld& world)
+    {
+        return world.*(&PreTick::m_internalPreTickCallback);
+    }
+};
+
 } // namespace
 
 struct BulletCoupling::Impl {
@@ -203,6 +211,9 @@ void BulletCoupling::step_for(double seconds)
 void BulletCoupling::attach(std::function<void(const StepReport&)> on_step)
 {
     require(impl_->after_tick == nullptr, "a coupling must be attached once only");
+    if (PreTick::of(impl_->world) == before_tick_callback)
+        throw std::logic_error("another coupling is attached to this Bullet world, and one only can be; to ride along "
+                               "with both, call before_tick and after_tick of each from callbacks of your own");
     impl_->on_step = std::move(on_step);
     impl_->user_info_before = impl_->world.getWorldUserInfo();
     impl_->world.setInternalTickCallback(before_tick_callback, this, true);

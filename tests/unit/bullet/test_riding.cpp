@@ -216,6 +216,40 @@ TEST_CASE("what a callback throws comes out of stepSimulation and ends the step"
     CHECK(tank.coupling.number_of(cube) == -1);
 }
 
+TEST_CASE("one coupling only is attached to a world, two ride along by hand", "[bullet][riding]")
+{
+    CoupledTank tank;
+    tank.add(Vec3d(0.4, 0.4, 0.4));
+    FluidWorld other_water(coarse());
+    BulletCoupling other(other_water, tank.scene.world);
+    tank.coupling.attach();
+    CHECK_THROWS_AS(tank.coupling.attach(), std::invalid_argument);
+    CHECK_THROWS_AS(other.attach(), std::logic_error);
+    CHECK_THROWS_WITH(other.attach(), Catch::Matchers::Contains("another coupling is attached"));
+    tank.scene.step(0.004);
+    CHECK(tank.water.time() == Approx(0.004));
+    CHECK(other_water.time() == 0.0);
+    tank.coupling.detach();
+    other.attach();
+    tank.scene.step(0.004);
+    CHECK(other_water.time() == Approx(0.004));
+    other.detach();
+
+    BulletCoupling* both[] = {&tank.coupling, &other};
+    const auto before = [](btDynamicsWorld* world, btScalar dt) {
+        for (int k = 0; k < 2; ++k)
+            static_cast<BulletCoupling**>(world->getWorldUserInfo())[k]->before_tick(static_cast<double>(dt));
+    };
+    const auto after = [](btDynamicsWorld* world, btScalar) {
+        for (int k = 0; k < 2; ++k) static_cast<BulletCoupling**>(world->getWorldUserInfo())[k]->after_tick();
+    };
+    tank.scene.world.setInternalTickCallback(before, both, true);
+    tank.scene.world.setInternalTickCallback(after, both, false);
+    tank.scene.step(0.004);
+    CHECK(tank.water.time() == Approx(0.008));
+    CHECK(other_water.time() == Approx(0.008));
+}
+
 TEST_CASE("two waters and two Bullet worlds live side by side", "[bullet][riding]")
 {
     CoupledTank tanks[2];
