@@ -46,6 +46,7 @@ class BulletBodies final : public Bodies {
     /// forces and kinematic bodies have been moved.
     void begin(double seconds, bool in_tick);
     void finish();
+    void abandon() { seconds_ = 0.0; } ///< the step that begin() began: nothing of it reaches Bullet
     /// Takes back the forces of finish(), in the same stepSimulation.
     void take_back_forces();
     /// After Bullet's step: largest difference of a coupled body's velocity from what the fluid believed in [m/s].

@@ -236,6 +236,8 @@ void BulletCoupling::before_tick(double dt)
     try {
         impl_->step_fluid(dt);
     } catch (...) {
+        impl_->bodies.abandon();
+        impl_->world.clearForces(); // as stepSimulation would at its end; else the next would add gravity to gravity
         impl_->is_stepping = false;
         throw;
     }

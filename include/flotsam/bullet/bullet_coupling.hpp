@@ -83,8 +83,9 @@ class BulletCoupling {
     /// From now on the fluid steps inside each internal step ("tick") of the world's stepSimulation, in as many steps
     /// of its own as it needs. Takes the world's pre-tick callback and user info, and adds an action; an application
     /// that has a pre-tick callback itself calls before_tick from it and after_tick from its tick callback instead.
-    /// `on_step` is told of each step of the fluid; what it throws comes out of stepSimulation. Throws std::logic_error
-    /// where another coupling is attached to the world: of two, the first would no longer be called.
+    /// `on_step` is told of each step of the fluid; what it throws comes out of stepSimulation, whose forces are then
+    /// cleared as at its end: the tick is left out by Bullet, while steps that the fluid has made in it stay. Throws
+    /// std::logic_error where another coupling is attached to the world: of two, the first would no longer be called.
     void attach(std::function<void(const StepReport&)> on_step = {});
     void detach(); ///< done by the destructor too
     void before_tick(double dt);

@@ -209,9 +209,12 @@ TEST_CASE("what a callback throws comes out of stepSimulation and ends the step"
     tank.coupling.attach([&](const StepReport&) {
         if (throws) throw std::runtime_error("enough");
     });
+    btRigidBody& falls = add_cube(tank.scene, Vec3d(5, 5, 5));
     CHECK_THROWS_WITH(tank.scene.step(0.004), "enough");
     throws = false;
+    CHECK(falls.getTotalForce().isZero());
     CHECK_NOTHROW(tank.scene.step(0.004));
+    CHECK(falls.getLinearVelocity().z() == Approx(-9.81 * 0.004)); // gravity of one step
     CHECK_NOTHROW(tank.coupling.remove(cube));
     CHECK(tank.coupling.number_of(cube) == -1);
 }
