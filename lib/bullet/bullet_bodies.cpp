@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace flotsam {
@@ -111,6 +112,7 @@ BulletBodies::Articulation* BulletBodies::articulation_of(const btMultiBody& bod
 void BulletBodies::begin(double seconds, bool in_tick)
 {
     require(seconds > 0.0 && std::isfinite(seconds), "a step must be > 0 s and finite", seconds);
+    require_in_world();
     seconds_ = seconds;
     is_in_tick_ = in_tick;
     elapsed_ = 0.0;
@@ -131,6 +133,21 @@ void BulletBodies::begin(double seconds, bool in_tick)
     impulses_.resize(motion_.bodies());
     answers_.resize(motion_.bodies());
     twists_.resize(motion_.bodies());
+}
+
+/// A body that was taken out would go on being pushed where it is not.
+void BulletBodies::require_in_world() const
+{
+    const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        const btCollisionObject* object = bodies_[k].body;
+        if (object == nullptr) object = bodies_[k].link;
+        if (object == nullptr) continue; // removed
+        const int index = object->getWorldArrayIndex();
+        if (index < 0 || index >= objects.size() || objects[index] != object)
+            require(false,
+                    "body " + std::to_string(k) + " must be in the Bullet world until it is removed from its coupling");
+    }
 }
 
 int BulletBodies::add_entity(const Twist& start, const Twist& end, const Mat6d& mobility)

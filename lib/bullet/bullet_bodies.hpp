@@ -88,6 +88,7 @@ class BulletBodies final : public Bodies {
         bool is_pushed = false;
         std::vector<Wrench> impulses; ///< per link
     };
+    void require_in_world() const;
     void begin_body(Coupled& coupled);
     void begin_dynamic(Coupled& coupled);
     [[nodiscard]] FreeMotion free_motion_of(btRigidBody& body) const;

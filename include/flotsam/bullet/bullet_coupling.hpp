@@ -68,7 +68,8 @@ class BulletCoupling {
     int add(btMultiBodyLinkCollider& link, const TriangleMesh& surface);
     /// All links that have a collider, base first; returns their numbers.
     std::vector<int> add(btMultiBody& body);
-    /// To be called before the body is removed from the Bullet world. Its number is not used again.
+    /// To be called before the body is removed from the Bullet world: a step without it there throws
+    /// std::invalid_argument with its number. That is not used again.
     void remove(btCollisionObject& body);
     /// Gives a coupled body another surface; its collision shape's, or its own.
     void reshape(btCollisionObject& body);

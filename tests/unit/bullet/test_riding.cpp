@@ -184,6 +184,28 @@ TEST_CASE("bodies are added, removed, put elsewhere and reshaped while the water
     scene.world.addRigidBody(&second); // the scene takes it out again
 }
 
+TEST_CASE("a coupled body that was taken out of the Bullet world is refused by its number", "[bullet][riding]")
+{
+    CoupledTank tank;
+    tank.add(Vec3d(0.2, 0.2, 0.4));
+    btRigidBody& taken = tank.add(Vec3d(0.6, 0.6, 0.4));
+    const bool rides = GENERATE(false, true);
+    if (rides) tank.coupling.attach();
+    const auto step = [&] { rides ? tank.scene.step(0.004) : static_cast<void>(tank.coupling.step(0.004)); };
+    step();
+    const double time = tank.water.time();
+    tank.scene.world.removeRigidBody(&taken);
+    CHECK_THROWS_AS(step(), std::invalid_argument);
+    CHECK_THROWS_WITH(step(), Catch::Matchers::StartsWith("body 1 must be in the Bullet world"));
+    CHECK(tank.water.time() == time);
+    tank.scene.world.addRigidBody(&taken); // out and in again is fine
+    CHECK_NOTHROW(step());
+    tank.scene.world.removeRigidBody(&taken);
+    tank.coupling.remove(taken); // late is better than never
+    CHECK_NOTHROW(step());
+    tank.scene.world.addRigidBody(&taken); // the scene takes it out again
+}
+
 TEST_CASE("nothing is added or removed while a step runs", "[bullet][riding]")
 {
     CoupledTank tank;
