@@ -365,6 +365,11 @@ void BulletBodies::apply(std::span<const Wrench> impulses)
     if (is_single_) finish();
 }
 
+std::optional<Vec3d> BulletBodies::gravity() const
+{
+    return from_bullet(world_.getGravity());
+}
+
 void BulletBodies::finish()
 {
     for (Coupled& coupled : bodies_) {

@@ -12,6 +12,7 @@
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <optional>
 #include <vector>
 
 namespace flotsam {
@@ -59,6 +60,7 @@ class BulletBodies final : public Bodies {
     bool own_mobility(std::span<Mat6d> blocks) const override;
     bool revise(std::span<const Wrench> impulses, std::span<BodyState> states) override;
     void apply(std::span<const Wrench> impulses) override;
+    [[nodiscard]] std::optional<Vec3d> gravity() const override;
 
     void before_bullet_step(double dt); ///< moves kinematic bodies
     void after_bullet_step();

@@ -100,6 +100,7 @@ struct FluidWorld::Impl {
     bool prepared = false;      ///< the water is placed: no wall and no water is added any more
     bool is_settled = false;    ///< prepare has come to its end
     bool is_stepping = false;
+    bool is_gravity_noted = false;
     std::vector<std::string> notes;
 
     std::vector<FluidSeed> seeds;
@@ -244,6 +245,7 @@ struct FluidWorld::Impl {
     // step.cpp
     StepReport step(double dt, Bodies& port);
     void read_bodies(double dt, Bodies& port);
+    void note_other_gravity(const Bodies& port);
     void place_body_samples();
     void find_neighbours();
     void hide_behind_sheets();

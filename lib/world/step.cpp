@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 namespace flotsam {
@@ -100,6 +101,25 @@ void FluidWorld::Impl::read_bodies(double dt, Bodies& port)
     for (std::size_t k = 0; k < bodies.size(); ++k)
         if (!bodies[k].mesh.empty()) require_usable(read_states[k], k); // others were removed
     states.swap(read_states);
+    note_other_gravity(port);
+}
+
+/// Nothing is wrong with it, but it is rarely meant.
+void FluidWorld::Impl::note_other_gravity(const Bodies& port)
+{
+    constexpr double kSame = 1e-5; // of it: engines with single precision round it
+    if (is_gravity_noted) return;
+    const std::optional<Vec3d> theirs = port.gravity();
+    const bool is_felt = std::any_of(states.begin(), states.end(), [](const BodyState& s) { return s.responds; });
+    if (!is_felt || !theirs || (*theirs - settings.gravity).norm() <= kSame * settings.gravity.norm()) return;
+    is_gravity_noted = true;
+    const auto components = [](const Vec3d& v) {
+        std::ostringstream text;
+        text << "(" << v.x() << ", " << v.y() << ", " << v.z() << ") m/s^2";
+        return text.str();
+    };
+    notes.push_back("bodies have a gravity of " + components(*theirs) + ", the water one of " +
+                    components(settings.gravity) + ": they float as they would under neither");
 }
 
 void FluidWorld::Impl::place_body_samples()

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -47,6 +48,10 @@ class Bodies {
 
     /// Hands the impulses of the step over for good.
     virtual void apply(std::span<const Wrench> impulses) = 0;
+
+    /// What the engine gives its bodies [m/s^2]; nothing where that is not known. A FluidWorld with another one notes
+    /// it.
+    [[nodiscard]] virtual std::optional<Vec3d> gravity() const { return std::nullopt; }
 };
 
 /// A world without bodies.

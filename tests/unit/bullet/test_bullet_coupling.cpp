@@ -59,6 +59,26 @@ TEST_CASE("in two dimensions a body is locked to the plane beside its own locks"
     CHECK(body.getAngularFactor() == btVector3(0, 1, 0));
 }
 
+TEST_CASE("a Bullet world with another gravity than the water's is noted once, when bodies feel it", "[bullet]")
+{
+    BulletScene scene; // 9.81 m/s^2, as the water
+    FluidWorld fluid({});
+    BulletCoupling coupling(fluid, scene.world);
+    coupling.add(scene.add_box(0.0, Vec3d(5, 0, 0)));
+    scene.world.setGravity(btVector3(0, 0, 0));
+    coupling.step(0.004);
+    CHECK(fluid.notes().empty()); // a static body feels none
+    scene.world.setGravity(btVector3(0, 0, btScalar(-9.81)));
+    coupling.add(scene.add_box(1.0));
+    coupling.step(0.004);
+    CHECK(fluid.notes().empty());
+    scene.world.setGravity(btVector3(0, 0, btScalar(-1.5)));
+    for (int k = 0; k < 3; ++k) coupling.step(0.004);
+    REQUIRE(fluid.notes().size() == 1);
+    CHECK(fluid.notes()[0] == "bodies have a gravity of (0, 0, -1.5) m/s^2, the water one of (0, 0, -9.81) m/s^2: they "
+                              "float as they would under neither");
+}
+
 TEST_CASE("the coupling refuses bodies it cannot couple", "[bullet]")
 {
     BulletScene scene;
