@@ -128,8 +128,7 @@ void BulletBodies::begin(double seconds, bool in_tick)
         coupled.entity = add_entity(coupled.start, coupled.end, dense(coupled.mobility));
         if (coupled.body != nullptr) numbers_.set(*coupled.body, coupled.entity, coupled.is_dynamic);
     }
-    collector_.collect(world_, seconds, numbers_, motion_, [&](btRigidBody& body) { return add_uncoupled(body); });
-    add_multibody_rows();
+    collect_rows();
     impulses_.resize(motion_.bodies());
     answers_.resize(motion_.bodies());
     twists_.resize(motion_.bodies());
@@ -187,6 +186,21 @@ void BulletBodies::begin_link(Coupled& coupled)
     coupled.is_dynamic = articulation.motion.mobility().responds(link);
     coupled.start = coupled.twist = start_[static_cast<std::size_t>(coupled.entity)];
     coupled.end = end_[static_cast<std::size_t>(coupled.entity)];
+}
+
+/// Bullet sets joints and contacts up when it has moved kinematic bodies to where they end, which it has within a tick.
+/// Looked at from where they start, a joint to one that moves would be short of what its error adds: erp of its speed.
+void BulletBodies::collect_rows()
+{
+    put_aside_.clear();
+    for (const Coupled& coupled : bodies_) {
+        if (is_in_tick_ || coupled.body == nullptr || !coupled.was_kinematic) continue;
+        put_aside_.emplace_back(coupled.body, coupled.body->getWorldTransform());
+        coupled.body->setWorldTransform(coupled.kinematic.end_pose(*coupled.body, seconds_));
+    }
+    collector_.collect(world_, seconds_, numbers_, motion_, [&](btRigidBody& body) { return add_uncoupled(body); });
+    add_multibody_rows();
+    for (const auto& [body, pose] : put_aside_) body->setWorldTransform(pose);
 }
 
 /// Motors, limits and other constraints of multibodies.

@@ -13,6 +13,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace flotsam {
@@ -99,6 +100,7 @@ class BulletBodies final : public Bodies {
     void begin_link(Coupled& coupled);
     int add_entity(const Twist& start, const Twist& end, const Mat6d& mobility);
     int add_uncoupled(btRigidBody& body);
+    void collect_rows();
     void add_multibody_rows();
     [[nodiscard]] int entity_of(const RowEnd& end);
     [[nodiscard]] Articulation* articulation_of(const btMultiBody& body);
@@ -117,11 +119,12 @@ class BulletBodies final : public Bodies {
     ConstraintCollector collector_;
     MultibodyRows multibody_rows_;
     std::vector<MultibodyRow> rows_scratch_;
-    std::vector<Twist> start_, end_;       ///< of all in motion_, as Coupled has them
-    mutable std::vector<Wrench> impulses_; ///< of the same
-    mutable std::vector<Twist> answers_;   ///< of the same
-    std::vector<Twist> twists_;            ///< of the same, at the end of the last fluid step
-    double seconds_ = 0.0;                 ///< of the Bullet step under way; 0: none
+    std::vector<std::pair<btRigidBody*, btTransform>> put_aside_; ///< while rows are collected
+    std::vector<Twist> start_, end_;                              ///< of all in motion_, as Coupled has them
+    mutable std::vector<Wrench> impulses_;                        ///< of the same
+    mutable std::vector<Twist> answers_;                          ///< of the same
+    std::vector<Twist> twists_;                                   ///< of the same, at the end of the last fluid step
+    double seconds_ = 0.0;                                        ///< of the Bullet step under way; 0: none
     double elapsed_ = 0.0, dt_ = 0.0;
     bool is_in_tick_ = false;
     bool is_single_ = false; ///< the Bullet step is one fluid step, begun by read

@@ -68,14 +68,20 @@ Twist KinematicMotion::plan_in_tick(const btRigidBody& body, double dt)
     return {part * rest.linear, part * rest.angular};
 }
 
-void KinematicMotion::move(btRigidBody& body, double dt) const
+btTransform KinematicMotion::end_pose(const btRigidBody& body, double dt) const
 {
-    const bool has_velocity = !set_linear_.isZero() || !set_angular_.isZero();
-    if (!has_velocity && target_pose(body) == seen_pose_) return;
-    body.activate(true); // Bullet reads no pose of a sleeping kinematic body
-    if (!has_velocity) return;
+    if (!has_velocity()) return target_pose(body);
     btTransform next;
     btTransformUtil::integrateTransform(seen_pose_, set_linear_, set_angular_, static_cast<btScalar>(dt), next);
+    return next;
+}
+
+void KinematicMotion::move(btRigidBody& body, double dt) const
+{
+    if (!has_velocity() && target_pose(body) == seen_pose_) return;
+    body.activate(true); // Bullet reads no pose of a sleeping kinematic body
+    if (!has_velocity()) return;
+    const btTransform next = end_pose(body, dt);
     if (body.getMotionState() != nullptr) body.getMotionState()->setWorldTransform(next);
     body.setWorldTransform(next);
 }

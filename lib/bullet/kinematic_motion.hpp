@@ -19,6 +19,8 @@ class KinematicMotion {
     void start(btRigidBody& body);
     /// Twist over a step of `dt` seconds from the pose start_pose(); repeated calls give the same.
     Twist plan(const btRigidBody& body, double dt);
+    /// After plan(): where a step of `dt` seconds takes the body.
+    [[nodiscard]] btTransform end_pose(const btRigidBody& body, double dt) const;
     /// Before Bullet's step: puts a body that has a velocity where that takes it, and wakes one that moves.
     void move(btRigidBody& body, double dt) const;
     /// After Bullet's step: whatever differs from now on was changed by the application.
@@ -33,6 +35,8 @@ class KinematicMotion {
     void reached(const Pose& pose) { pose_in_tick_ = pose; }
 
   private:
+    [[nodiscard]] bool has_velocity() const { return !set_linear_.isZero() || !set_angular_.isZero(); }
+
     Pose pose_in_tick_;
     bool rides_ = false; ///< has been planned in a tick
     btTransform seen_pose_ = btTransform::getIdentity();

@@ -3,6 +3,8 @@
 #include "flotsam/bullet/bullet_coupling.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
+
 using namespace flotsam;
 using namespace flotsam::test;
 
@@ -77,6 +79,59 @@ TEST_CASE("a Bullet world with another gravity than the water's is noted once, w
     REQUIRE(fluid.notes().size() == 1);
     CHECK(fluid.notes()[0] == "bodies have a gravity of (0, 0, -1.5) m/s^2, the water one of (0, 0, -9.81) m/s^2: they "
                               "float as they would under neither");
+}
+
+TEST_CASE("a body on a joint to one that is moved goes as the fluid believes", "[bullet][kinematic]")
+{
+    constexpr double kSpeed = 0.3;
+    const bool by_velocity = GENERATE(false, true);
+    BulletScene scene;
+    scene.world.getSolverInfo().m_numIterations = 200; // Bullet's own solve is not what is tested
+    btRigidBody& cart = scene.add_kinematic(Vec3d(0, 0, 1));
+    btRigidBody& bob = scene.add_box(2.0, Vec3d(0, 0, 0.4));
+    bob.setLinearVelocity(btVector3(btScalar(kSpeed), 0, 0));
+    btTransform below = btTransform::getIdentity(), above = btTransform::getIdentity();
+    below.setOrigin(btVector3(0, 0, btScalar(-0.3)));
+    above.setOrigin(btVector3(0, 0, btScalar(0.3)));
+    btFixedConstraint joint(cart, bob, below, above);
+    scene.world.addConstraint(&joint, true);
+    FluidWorld fluid({});
+    BulletCoupling coupling(fluid, scene.world);
+    coupling.add(cart);
+    coupling.add(bob);
+    if (by_velocity) cart.setLinearVelocity(btVector3(btScalar(kSpeed), 0, 0));
+    double most = 0.0;
+    for (int k = 1; k <= 100; ++k) {
+        if (!by_velocity) {
+            btTransform next = cart.getWorldTransform();
+            next.setOrigin(next.getOrigin() + btVector3(btScalar(kSpeed * 0.004), 0, 0));
+            cart.setWorldTransform(next);
+        }
+        most = std::max(most, coupling.step(0.004).disagreement);
+    }
+    CHECK(cart.getWorldTransform().getOrigin().x() == Approx(0.12)); // it was moved
+    CHECK(bob.getLinearVelocity().x() == Approx(kSpeed));            // and took the other along
+    CHECK(most < 1e-3 * kSpeed);                                     // 0.2, Bullet's erp, from where it starts
+    scene.world.removeConstraint(&joint);
+}
+
+TEST_CASE("what a kinematic body lifts goes as the fluid believes", "[bullet][kinematic]")
+{
+    constexpr double kSpeed = 0.2;
+    BulletScene scene;
+    btRigidBody& plate = scene.add_kinematic();
+    btRigidBody& load = scene.add_box(2.0, Vec3d(0, 0, 0.35));
+    load.setAngularFactor(btScalar(0)); // upright
+    FluidWorld fluid({});
+    BulletCoupling coupling(fluid, scene.world);
+    coupling.add(plate);
+    coupling.add(load);
+    plate.setLinearVelocity(btVector3(0, 0, btScalar(kSpeed)));
+    coupling.step_for(0.5); // until they lie on each other
+    double most = 0.0;
+    for (int k = 0; k < 50; ++k) most = std::max(most, coupling.step(0.004).disagreement);
+    CHECK(load.getLinearVelocity().z() == Approx(kSpeed).epsilon(0.01));
+    CHECK(most < 1e-3 * kSpeed);
 }
 
 TEST_CASE("the coupling refuses bodies it cannot couple", "[bullet]")
