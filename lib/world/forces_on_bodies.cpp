@@ -32,7 +32,8 @@ ByCause<Wrench> FluidWorld::Impl::wrenches(std::size_t owner) const
     const bool is_removed = owner >= walls.size() && bodies[owner - walls.size()].mesh.empty();
     if (!(last_dt > 0.0) || owner >= guarded.size() || is_removed) return {};
     const double rate = 1.0 / last_dt;
-    return {(pushed[owner] + filmed[owner]) * rate, rubbed[owner] * rate, relieved[owner] * rate, guarded[owner] * rate};
+    return {(pushed[owner] + filmed[owner]) * rate, rubbed[owner] * rate, relieved[owner] * rate,
+            guarded[owner] * rate};
 }
 
 Wrench FluidWorld::Impl::hydrostatic(std::size_t body, std::optional<double> level) const

@@ -51,9 +51,10 @@ struct FilmWater {
 ///
 /// with P and X the means of the particles next to the film that touch no solid, and `wet` the part of the film's rim
 /// that has particles: there is air, or no way in, at the rest of it. A rim at which the faces part slowly counts as
-/// having none: particles that are pressed into a wedge push its faces apart as a film would. Films follow P with a
-/// delay, since what they do is not part of the pressure system. Inertia and friction of the film (the squeeze film of
-/// lubrication theory) are left out.
+/// having none: particles that are pressed into a wedge push its faces apart as a film would. Of P, rho0 u^2 / 2 goes
+/// where the gap opens, u the speed at which water flows in at the rim. Films follow P with a delay, since what they do
+/// is not part of the pressure system (as rows of it, they compressed the particles at their rims by a third: there is
+/// no place for what flows in). Inertia and friction of the film (the squeeze film of lubrication theory) are left out.
 class WaterFilms {
   public:
     /// Finds the films between `solids`, one for each owner of samples. `guard` has bounds of the distances to the
@@ -85,12 +86,12 @@ class WaterFilms {
     /// A part of a face that has another solid in front of it, world frame.
     struct Facing {
         Vec3d center, normal;
-        Vec3d middle; ///< of the gap
-        double area;  ///< [m^2]
-        double gap;   ///< [m]
-        double slope; ///< sine of the angle between the faces
-        double share; ///< that is a film's, not the particles'
-        std::uint32_t part;
+        Vec3d middle;        ///< of the gap
+        double area;         ///< [m^2]
+        double gap;          ///< [m]
+        double slope;        ///< sine of the angle between the faces
+        double share;        ///< that is a film's, not the particles'
+        std::uint32_t part;  ///< of the body's Faces
         std::size_t set = 0; ///< its film
         bool is_rim = false;
     };
