@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace flotsam {
@@ -88,6 +89,7 @@ void WaterFilms::fill(const WaterFilmSettings& settings, double dt, const FilmWa
     faces_.resize(solids.size());
     if (std::none_of(solids.begin(), solids.end(), [](const FilmSolid& solid) { return solid.responds; })) return;
     find_touches(water, solids);
+    if (!touches_.empty()) find_top(water.fluid);
     for (std::size_t begin = 0, end = 0; begin < touches_.size(); begin = end) {
         const Touch pair = touches_[begin]; // a copy: find_facing may make room
         while (end < touches_.size() && touches_[end].a == pair.a && touches_[end].b == pair.b) ++end;
@@ -106,6 +108,15 @@ void WaterFilms::fill(const WaterFilmSettings& settings, double dt, const FilmWa
             press(parts, rim, around, dt, pair.a, pair.b, solids);
         }
     }
+}
+
+/// Sets top_: of the highest water, along gravity.
+void WaterFilms::find_top(const FluidState& fluid)
+{
+    const Vec3 down = settings_.gravity.cast<Scalar>();
+    Scalar top = std::numeric_limits<Scalar>::infinity();
+    for (const Vec4& position : fluid.position) top = std::min(top, down.dot(position.head<3>()));
+    top_ = static_cast<double>(top);
 }
 
 /// Pairs of solids that touch the same particle, at least one of which responds: that is `a`, the first one of two.
@@ -314,7 +325,9 @@ void WaterFilms::press(std::span<const Facing> parts, const Rim& rim, const Arou
     Film film{a, b, 1.0, {}, {}, pressed_.size(), 0};
     for (const Facing& part : parts) {
         const double head = settings_.rest_density * settings_.gravity.dot(part.center - around.place);
-        const double target = rim.wet * std::max(0.0, around.pressure + head);
+        const double depth = settings_.gravity.dot(part.center) - top_;
+        const double most = settings_.rest_density * std::max(0.0, depth);
+        const double target = rim.wet * std::clamp(around.pressure + head, 0.0, most);
         double& pressure = faces.pressure[part.part];
         if (step_ - faces.last_steps[part.part] > 1) pressure = 0.0;
         faces.last_steps[part.part] = step_;

@@ -54,7 +54,9 @@ struct FilmWater {
 /// having none: particles that are pressed into a wedge push its faces apart as a film would. Of P, rho0 u^2 / 2 goes
 /// where the gap opens, u the speed at which water flows in at the rim. Films follow P with a delay, since what they do
 /// is not part of the pressure system (as rows of it, they compressed the particles at their rims by a third: there is
-/// no place for what flows in). Inertia and friction of the film (the squeeze film of lubrication theory) are left out.
+/// no place for what flows in). p is at most that of still water under the highest particle: else solids that films
+/// push apart would squeeze water elsewhere, whose pressure would feed other films. Inertia and friction of the film
+/// (the squeeze film of lubrication theory) are left out.
 class WaterFilms {
   public:
     /// Finds the films between `solids`, one for each owner of samples. `guard` has bounds of the distances to the
@@ -123,6 +125,7 @@ class WaterFilms {
         Vec3d place = Vec3d::Zero();
     };
 
+    void find_top(const FluidState& fluid);
     void cut(Faces& faces, const TriangleMesh& mesh);
     void find_touches(const FilmWater& water, std::span<const FilmSolid> solids);
     void find_facing(std::size_t a, std::size_t b, std::span<const FilmSolid> solids, const WallGuard& guard);
@@ -137,6 +140,7 @@ class WaterFilms {
 
     WaterFilmSettings settings_;
     std::uint32_t step_ = 0;
+    double top_ = 0.0;                    ///< gravity . x of the highest particle [m^2/s^2]
     std::vector<Faces> faces_;            ///< by owner
     std::vector<std::uint8_t> owners_at_; ///< of each particle, at most 2
     std::vector<Touch> touches_;          ///< sorted
