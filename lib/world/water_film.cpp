@@ -16,6 +16,7 @@ constexpr double kTaken = 0.75, kFree = 1.15;  ///< distance to the nearest part
 constexpr double kReach = 1.2;                 ///< of a part's neighbours in a film
 constexpr double kAtRim = 1.6, kWeights = 2.0; ///< of a rim's particles: that it is wet, that they count
 
+constexpr double kMostOfStill = 1.5;         ///< of the pressure under the highest particle that a film may have
 constexpr double kStep = 0.08, kWedge = 0.2; ///< slopes of a rim at which it is a step, and a wedge
 
 double smooth_step(double x)
@@ -326,7 +327,7 @@ void WaterFilms::press(std::span<const Facing> parts, const Rim& rim, const Arou
     for (const Facing& part : parts) {
         const double head = settings_.rest_density * settings_.gravity.dot(part.center - around.place);
         const double depth = settings_.gravity.dot(part.center) - top_;
-        const double most = settings_.rest_density * std::max(0.0, depth);
+        const double most = kMostOfStill * settings_.rest_density * std::max(0.0, depth);
         const double target = rim.wet * std::clamp(around.pressure + head, 0.0, most);
         double& pressure = faces.pressure[part.part];
         if (step_ - faces.last_steps[part.part] > 1) pressure = 0.0;

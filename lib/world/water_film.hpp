@@ -54,9 +54,9 @@ struct FilmWater {
 /// having none: particles that are pressed into a wedge push its faces apart as a film would. Of P, rho0 u^2 / 2 goes
 /// where the gap opens, u the speed at which water flows in at the rim. Films follow P with a delay, since what they do
 /// is not part of the pressure system (as rows of it, they compressed the particles at their rims by a third: there is
-/// no place for what flows in). p is at most that of still water under the highest particle: else solids that films
-/// push apart would squeeze water elsewhere, whose pressure would feed other films. Inertia and friction of the film
-/// (the squeeze film of lubrication theory) are left out.
+/// no place for what flows in). p is at most 1.5 of that of still water under the highest particle: else solids that
+/// films push apart would squeeze water elsewhere, whose pressure would feed other films. Inertia and friction of the
+/// film (the squeeze film of lubrication theory) are left out.
 class WaterFilms {
   public:
     /// Finds the films between `solids`, one for each owner of samples. `guard` has bounds of the distances to the
