@@ -1,5 +1,6 @@
 #include "geometry/sheet.hpp"
 
+#include "core/smooth_step.hpp"
 #include "geometry/triangle_math.hpp"
 
 #include <algorithm>
@@ -112,8 +113,7 @@ SheetView Sheet::view_from(const Vec3d& point, double reach) const
     view.place = foot.place;
     view.normal = (point - foot.place) / foot.height;
     view.side = best;
-    const double beyond = std::min(1.0, foot.beyond_rim / (kRim * spacing_));
-    view.beyond_rim = beyond * beyond * (3.0 - 2.0 * beyond);
+    view.beyond_rim = smooth_step(foot.beyond_rim / (kRim * spacing_));
     return view;
 }
 

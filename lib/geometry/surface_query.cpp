@@ -221,6 +221,11 @@ const Aabb& SurfaceQuery::bounds() const
     return impl_->box;
 }
 
+const Vec3d& SurfaceQuery::normal(int triangle) const
+{
+    return impl_->normals[static_cast<std::size_t>(triangle)];
+}
+
 SurfaceQuery::Closest SurfaceQuery::closest(const Vec3d& point) const
 {
     Closest best;

@@ -2,6 +2,7 @@
 
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/geometry/mass_properties.hpp"
+#include "world/usable_mesh.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -24,19 +25,6 @@ bool inside_box_wall(const Wall& wall, const Vec3d& p, int dimensions)
         if (!wall.open[low + 1] && !(p[axis] <= wall.box->max[axis])) return false;
     }
     return true;
-}
-
-bool is_closed(const TriangleMesh& mesh)
-{
-    // Every directed edge has its reverse: the sum of the triangles' area vectors vanishes for a closed surface.
-    Vec3d sum = Vec3d::Zero();
-    double area = 0.0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const Vec3d part = (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
-        sum += part;
-        area += part.norm();
-    }
-    return sum.norm() < 1e-6 * area;
 }
 
 /// What a wall holds that is closed on all sides [m^3; in 2-D m^2]; nothing for others, and for meshes in 2-D.

@@ -40,4 +40,17 @@ void require_solid(const TriangleMesh& mesh, std::string_view what)
         refuse(what, " must enclose a volume > 0 with triangles that face outward [m^3], given ", volume);
 }
 
+bool is_closed(const TriangleMesh& mesh)
+{
+    // Every directed edge has its reverse: the sum of the triangles' area vectors vanishes for a closed surface.
+    Vec3d sum = Vec3d::Zero();
+    double area = 0.0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Vec3d part = (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
+        sum += part;
+        area += part.norm();
+    }
+    return sum.norm() < 1e-6 * area;
+}
+
 } // namespace flotsam

@@ -14,4 +14,7 @@ void require_surface(const TriangleMesh& mesh, std::string_view what);
 /// The same, and the triangles face outward: the volume is above zero.
 void require_solid(const TriangleMesh& mesh, std::string_view what);
 
+/// Whether the triangles' areas, as vectors, add up to nothing, as those of a closed surface do.
+[[nodiscard]] bool is_closed(const TriangleMesh& mesh);
+
 } // namespace flotsam

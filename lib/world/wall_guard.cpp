@@ -133,10 +133,7 @@ std::optional<WallGuard::Hit> WallGuard::first_hit(const Vec3d& from, const Vec3
             const auto hit = surface.query->sweep(a, b);
             if (!hit) break;
             const double fraction = start + hit->fraction * (1.0 - start);
-            const TriangleMesh& mesh = surface.query->mesh();
-            const std::size_t t = static_cast<std::size_t>(hit->triangle);
-            const Vec3d normal =
-                (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0)).normalized();
+            const Vec3d& normal = surface.query->normal(hit->triangle);
             const bool along = (b - a).dot(normal) > 0.0;
             if (along ? surface.stops_along_normals : surface.stops_against_normals) {
                 if (!first || fraction < first->fraction) {

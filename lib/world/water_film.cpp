@@ -1,5 +1,8 @@
 #include "world/water_film.hpp"
 
+#include "core/smooth_step.hpp"
+#include "world/usable_mesh.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,49 +22,22 @@ constexpr double kAtRim = 1.6, kWeights = 2.0; ///< of a rim's particles: that i
 constexpr double kMostOfStill = 1.5;         ///< of the pressure under the highest particle that a film may have
 constexpr double kStep = 0.08, kWedge = 0.2; ///< slopes of a rim at which it is a step, and a wedge
 
-double smooth_step(double x)
-{
-    const double t = std::clamp(x, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
-bool is_closed(std::span<const TrianglePiece> pieces)
-{
-    Vec3d sum = Vec3d::Zero();
-    double area = 0.0;
-    for (const TrianglePiece& piece : pieces) {
-        sum += piece.area * piece.normal;
-        area += piece.area;
-    }
-    return sum.norm() < 1e-6 * area;
-}
-
 /// Parts of the faces of a closed mesh, none for an open one; in 2-D of its outline, with lengths for areas.
 std::vector<TrianglePiece> faces_of(const TriangleMesh& mesh, double spacing, int dimensions)
 {
+    if (!is_closed(mesh)) return {};
     const double longest = kPiece * spacing;
-    if (dimensions != 2) {
-        std::vector<TrianglePiece> pieces = pieces_of(mesh, longest);
-        if (!is_closed(pieces)) pieces.clear();
-        return pieces;
-    }
+    if (dimensions != 2) return pieces_of(mesh, longest);
     TriangleMesh thin = mesh;
     const double scale = 0.5 * longest / bounds(mesh).size().y();
     for (Vec3d& vertex : thin.vertices) vertex.y() *= scale;
     std::vector<TrianglePiece> pieces = pieces_of(thin, longest);
-    if (!is_closed(pieces)) pieces.clear();
     std::erase_if(pieces, [](const TrianglePiece& piece) { return std::abs(piece.normal.y()) > 0.5; });
     for (TrianglePiece& piece : pieces) {
         piece.center.y() = 0.0;
         piece.area /= 0.5 * longest;
     }
     return pieces;
-}
-
-Vec3d normal_of(const TriangleMesh& mesh, int triangle)
-{
-    const std::size_t t = static_cast<std::size_t>(triangle);
-    return (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0)).normalized();
 }
 
 /// Whether a surface that was met in front of a face looks at it.
@@ -90,12 +66,14 @@ void WaterFilms::fill(const WaterFilmSettings& settings, double dt, const FilmWa
     faces_.resize(solids.size());
     if (std::none_of(solids.begin(), solids.end(), [](const FilmSolid& solid) { return solid.responds; })) return;
     find_touches(water, solids);
-    if (!touches_.empty()) find_top(water.fluid);
+    bool has_top = false;
     for (std::size_t begin = 0, end = 0; begin < touches_.size(); begin = end) {
         const Touch pair = touches_[begin]; // a copy: find_facing may make room
         while (end < touches_.size() && touches_[end].a == pair.a && touches_[end].b == pair.b) ++end;
         find_facing(pair.a, pair.b, solids, guard);
         if (facing_.empty()) continue;
+        if (!has_top) find_top(water.fluid);
+        has_top = true;
         const std::span<const Touch> touches(touches_.data() + begin, end - begin);
         leave_to_particles(touches, water.fluid);
         join_and_find_rims();
@@ -186,7 +164,7 @@ void WaterFilms::find_facing(std::size_t a, std::size_t b, std::span<const FilmS
         const Vec3d normal = turn * part.normal;
         const auto hit = other.sweep(at - overlap * normal, at + wide * normal);
         if (!hit) continue;
-        const Vec3d met = normal_of(other.mesh(), hit->triangle);
+        const Vec3d& met = other.normal(hit->triangle);
         if (!looks_back(met, normal, solids[b].side)) continue;
         const double gap = std::max(0.0, hit->fraction * (overlap + wide) - overlap);
         Facing facing;

@@ -21,6 +21,8 @@ class SurfaceQuery {
 
     [[nodiscard]] const TriangleMesh& mesh() const;
     [[nodiscard]] const Aabb& bounds() const;
+    /// Unit normal of a triangle, to its counter-clockwise side; 0 of one without area.
+    [[nodiscard]] const Vec3d& normal(int triangle) const;
 
     struct Closest {
         double distance = 0.0;       ///< [m], >= 0

@@ -1,5 +1,7 @@
 #include "sph/forces/recent_slip.hpp"
 
+#include "core/smooth_step.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -50,8 +52,7 @@ void RecentSlip::update(double dt, double spacing, double gravity, const FluidSt
             slip.linear += std::min(1.0, past) * (linear - slip.linear);
             slip.angular += std::min(1.0, past) * (angular - slip.angular);
         }
-        const double part = std::clamp((slip.recent - kStill) / (kMoves - kStill), 0.0, 1.0);
-        shares_[owner] = static_cast<Scalar>(part * part * (3.0 - 2.0 * part));
+        shares_[owner] = static_cast<Scalar>(smooth_step((slip.recent - kStill) / (kMoves - kStill)));
     }
 }
 
