@@ -25,11 +25,23 @@ void check(const std::error_code& error, const std::string& attempt)
     if (error) throw OutputError("cannot " + attempt + ": " + error.message());
 }
 
-/// A file that each output of ours of one kind has, and what is in it.
+/// How an output of ours is known: by a file that each has with what is in it, and that there is nothing else.
 struct Mark {
     const char* file;
     std::initializer_list<const char*> keys;
+    std::initializer_list<const char*> names; ///< of all that may be there
 };
+
+const Mark& mark_of(OutputKind kind)
+{
+    static const Mark run{"report.json",
+                          {"version", "particles", "steps"},
+                          {"report.json", "history.csv", "particles.pvd", "bodies.pvd", "vtk", "pictures"}};
+    static const Mark hydrostatics{"hydrostatics.json",
+                                   {"version", "mesh", "stable_poses"},
+                                   {"hydrostatics.json", "poses.csv", "righting_arm.csv", "righting_arm.png"}};
+    return kind == OutputKind::run ? run : hydrostatics;
+}
 
 /// A name alone would do for most, but other programs write a report.json too, and what is ours is removed.
 bool has_mark(const fs::path& directory, const Mark& mark)
@@ -41,13 +53,21 @@ bool has_mark(const fs::path& directory, const Mark& mark)
            std::all_of(mark.keys.begin(), mark.keys.end(), [&](const char* key) { return report.contains(key); });
 }
 
-bool is_output_of_ours(const fs::path& directory)
+/// The first by name of what somebody else has put into a directory of ours; empty if there is nothing.
+std::string foreign_name(const fs::path& directory, const Mark& mark)
 {
-    return has_mark(directory, {"report.json", {"version", "particles", "steps"}}) ||
-           has_mark(directory, {"hydrostatics.json", {"version", "mesh", "stable_poses"}});
+    std::string first;
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
+        const std::string name = entry.path().filename().string();
+        if (std::find(mark.names.begin(), mark.names.end(), name) != mark.names.end()) continue;
+        if (first.empty() || name < first) first = name;
+    }
+    check(error, "read the directory " + directory.string());
+    return first;
 }
 
-void require_replaceable(const fs::path& target)
+void require_replaceable(const fs::path& target, OutputKind kind)
 {
     std::error_code error;
     const fs::file_status status = fs::status(target, error);
@@ -59,11 +79,16 @@ void require_replaceable(const fs::path& target)
     }
     const bool empty = fs::is_empty(target, error);
     check(error, "read the directory " + target.string());
-    if (!empty && !is_output_of_ours(target)) {
-        throw InputError(
-            "the output directory " + target.string() +
-            " holds something else than an output of flotsam (which has its report.json or hydrostatics.json); give a "
-            "new or an empty directory");
+    if (empty) return;
+    const Mark& mark = mark_of(kind);
+    if (!has_mark(target, mark)) {
+        throw InputError("the output directory " + target.string() +
+                         " holds something else than an older output of this command (which has its " + mark.file +
+                         "); give a new or an empty directory");
+    }
+    if (const std::string name = foreign_name(target, mark); !name.empty()) {
+        throw InputError("the output directory " + target.string() + " holds " + name +
+                         " beside an older output, which would be lost; move it, or give a new or an empty directory");
     }
 }
 
@@ -119,10 +144,10 @@ void write_text_atomically(const fs::path& file, std::string_view text)
     check(error, "write " + file.string());
 }
 
-OutputDirectory::OutputDirectory(const fs::path& target)
-    : target_(settled_name(target)), first_made_parent_(first_missing_parent(target_))
+OutputDirectory::OutputDirectory(const fs::path& target, OutputKind kind)
+    : target_(settled_name(target)), kind_(kind), first_made_parent_(first_missing_parent(target_))
 {
-    require_replaceable(target_);
+    require_replaceable(target_, kind_);
     path_ = free_name(beside(target_, ".partial-" + std::to_string(::getpid())));
     std::error_code error;
     fs::create_directories(path_, error);
@@ -140,7 +165,7 @@ OutputDirectory::~OutputDirectory()
 void OutputDirectory::commit()
 {
     require(!settled_, "an output directory is committed or kept once");
-    require_replaceable(target_);
+    require_replaceable(target_, kind_);
     std::error_code error;
     std::error_code ignored;
     fs::path old;

@@ -145,7 +145,7 @@ std::string report_as_json(const HydrostaticsReport& report)
 
 std::string write_hydrostatics(const HydrostaticsReport& report, const fs::path& directory)
 {
-    OutputDirectory out(directory);
+    OutputDirectory out(directory, OutputKind::hydrostatics);
     write_text_atomically(out.path() / "hydrostatics.json", report_as_json(report));
     write_poses(out.path() / "poses.csv", report.stable);
     if (!report.righting_arms.empty()) write_arms(out.path() / "righting_arm.csv", report.righting_arms);

@@ -9,17 +9,20 @@ namespace flotsam {
 /// Throws OutputError; the old file is then as it was.
 void write_text_atomically(const std::filesystem::path& file, std::string_view text);
 
+/// Of what an output is; one of another kind is not replaced.
+enum class OutputKind { run, hydrostatics };
+
 /// A directory of results that appears whole or not at all: everything is written to a temporary directory beside the
 /// target, which takes the target's name on commit.
 ///
-/// An older output of flotsam (a directory whose report.json or hydrostatics.json is one of ours) is replaced with all
-/// that is in it, an empty directory too; any other directory is never touched. Missing parents are made. Without
-/// commit or keep_partial the destructor removes what was written.
+/// An older output of the same kind (a directory whose report.json or hydrostatics.json is one of ours, and that holds
+/// nothing beside what flotsam writes) is replaced, an empty directory too; any other directory is never touched.
+/// Missing parents are made. Without commit or keep_partial the destructor removes what was written.
 class OutputDirectory {
   public:
     /// Throws InputError when `target` is a file or a directory that is not ours to replace; OutputError when the
     /// system refuses.
-    explicit OutputDirectory(const std::filesystem::path& target);
+    explicit OutputDirectory(const std::filesystem::path& target, OutputKind kind = OutputKind::run);
     ~OutputDirectory();
     OutputDirectory(const OutputDirectory&) = delete;
     OutputDirectory& operator=(const OutputDirectory&) = delete;
@@ -39,6 +42,7 @@ class OutputDirectory {
     void remove_traces() noexcept;
 
     std::filesystem::path target_;
+    OutputKind kind_;
     std::filesystem::path path_;
     std::filesystem::path first_made_parent_; ///< empty: all parents were there
     bool settled_ = false;

@@ -14,9 +14,9 @@ const std::string kReport = R"({"version": "0.1.0", "particles": {"fluid": 1}, "
 
 void make_older_output(const fs::path& directory)
 {
-    fs::create_directories(directory / "frames");
+    fs::create_directories(directory / "pictures");
     put(directory / "report.json", kReport);
-    put(directory / "frames" / "0.vtp", "old");
+    put(directory / "pictures" / "0.vtp", "old");
 }
 
 } // namespace
@@ -55,7 +55,7 @@ TEST_CASE("an older output is replaced whole, and only on commit", "[io][output]
     {
         const OutputDirectory refused(scratch / "out");
     }
-    CHECK(contents(scratch / "out/frames/0.vtp") == "old");
+    CHECK(contents(scratch / "out/pictures/0.vtp") == "old");
     {
         OutputDirectory out(scratch / "out");
         put(out.path() / "report.json", "new");
@@ -63,21 +63,38 @@ TEST_CASE("an older output is replaced whole, and only on commit", "[io][output]
         out.commit();
     }
     CHECK(contents(scratch / "out/report.json") == "new");
-    CHECK_FALSE(fs::exists(scratch / "out/frames"));
+    CHECK_FALSE(fs::exists(scratch / "out/pictures"));
     CHECK(scratch.entries() == 1);
 }
 
-TEST_CASE("an older table of hydrostatics is ours to replace as well", "[io][output]")
+TEST_CASE("an older table of hydrostatics is replaced by another one, not by a run", "[io][output]")
 {
     const Scratch scratch;
+    const auto table = [&] { return OutputDirectory(scratch / "out", OutputKind::hydrostatics); };
     fs::create_directory(scratch / "out");
     put(scratch / "out/hydrostatics.json", R"({"version": "0.1.0", "mesh": "a.obj"})");
-    CHECK_THROWS_AS(OutputDirectory(scratch / "out"), InputError); // not all that ours has
+    CHECK_THROWS_AS(table(), InputError); // not all that ours has
     put(scratch / "out/hydrostatics.json", R"({"version": "0.1.0", "mesh": "a.obj", "stable_poses": []})");
-    OutputDirectory out(scratch / "out");
-    put(out.path() / "report.json", kReport);
+    CHECK_THROWS_WITH(OutputDirectory(scratch / "out"), Catch::Contains("something else"));
+    put(scratch / "out/poses.csv", "old");
+    OutputDirectory out(scratch / "out", OutputKind::hydrostatics);
+    put(out.path() / "hydrostatics.json", "new");
     out.commit();
-    CHECK_FALSE(fs::exists(scratch / "out/hydrostatics.json"));
+    CHECK(contents(scratch / "out/hydrostatics.json") == "new");
+    CHECK_FALSE(fs::exists(scratch / "out/poses.csv"));
+}
+
+TEST_CASE("what somebody has put beside an output of ours is not lost", "[io][output]")
+{
+    const Scratch scratch;
+    make_older_output(scratch / "out");
+    put(scratch / "out/notes.txt", "years of work");
+    CHECK_THROWS_WITH(OutputDirectory(scratch / "out"), Catch::Contains("out holds notes.txt beside"));
+    fs::rename(scratch / "out/notes.txt", scratch / "notes.txt");
+    OutputDirectory out(scratch / "out");
+    put(scratch / "out/scene.json", "{}"); // while we ran
+    CHECK_THROWS_WITH(out.commit(), Catch::Contains("scene.json"));
+    CHECK(contents(scratch / "out/pictures/0.vtp") == "old");
 }
 
 TEST_CASE("an empty directory is taken", "[io][output]")

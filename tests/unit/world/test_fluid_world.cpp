@@ -4,6 +4,7 @@
 #include "support/catch.hpp"
 #include "support/free_bodies.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 
@@ -363,6 +364,25 @@ TEST_CASE("in two dimensions a body feels the water when rounding has turned it 
     REQUIRE(world.boundary().size() > 50);
     for (const Vec4& position : world.boundary().position) CHECK(position.y() == 0.0f);
     CHECK(bodies.bodies[0].momentum.z() > 0.0); // it is half as heavy as the water in its place
+}
+
+TEST_CASE("in two dimensions water stays in the plane, whatever rounding does to a body's velocity", "[world]")
+{
+    FluidWorld fluid = tank(plane());
+    const Vec3d edges(0.1, 1.0, 0.08);
+    fluid.add_body(tessellate(BoxShape{edges}, kSpacing));
+    FreeBody box = free_box(edges, 500.0, Vec3d(0.2, 0, 0.25));
+    box.pose.orientation = Quatd(Eigen::AngleAxisd(0.3, Vec3d(1e-16, 1.0, -1e-16).normalized()));
+    box.momentum.y() = 1e-12;
+    box.angular_momentum = Vec3d(1e-12, 0, -1e-12);
+    FreeBodies bodies({box}, fluid.settings().gravity);
+    while (fluid.time() < 0.3) fluid.step(fluid.allowed_time_step(), bodies);
+    const auto out_of_plane = [](const std::vector<Vec4>& vectors) {
+        return std::count_if(vectors.begin(), vectors.end(), [](const Vec4& v) { return v[1] != 0; });
+    };
+    CHECK(out_of_plane(fluid.fluid().position) == 0);
+    CHECK(out_of_plane(fluid.fluid().velocity) == 0);
+    CHECK(std::abs(fluid.fluid_wrench(0).linear.y()) < 1e-9);
 }
 
 TEST_CASE("notes call walls and bodies by their names", "[world]")
