@@ -92,12 +92,14 @@ void RunTally::add_last_quarter(const StepReport& step)
 
 void RunTally::measure_drafts(double dt)
 {
+    if (!is_level(scene_.gravity)) return;
     const std::vector<BodyState> states = world_.body_states();
-    const std::optional<double> level = world_.fluid().waterline(states);
-    if (!level || !is_level(scene_.gravity)) return;
-    waterline_.add(*level, dt);
-    for (std::size_t k = 0; k < bodies_.size(); ++k)
-        bodies_[k].draft.add(*level - lowest_point(prepared_.bodies[k].mesh, states[k].pose), dt);
+    const std::vector<std::optional<double>> levels = world_.fluid().waterlines(states);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        if (!levels[k]) continue;
+        bodies_[k].waterline.add(*levels[k], dt);
+        bodies_[k].draft.add(*levels[k] - lowest_point(prepared_.bodies[k].mesh, states[k].pose), dt);
+    }
 }
 
 RunReport RunTally::report() const
@@ -156,7 +158,7 @@ BodyReport RunTally::report_body(std::size_t k) const
     report.rotation_deg = rotation_vector(rotation) * kDegrees;
     report.velocity = now.twist.linear;
     report.tilt_deg = kDegrees * std::acos(std::clamp((rotation * Vec3d::UnitZ()).z(), -1.0, 1.0));
-    report.waterline = waterline_.mean();
+    report.waterline = bodies_[k].waterline.mean();
     report.draft = bodies_[k].draft.mean();
     report.force_fluid_mean = bodies_[k].force.mean().value_or(Vec3d::Zero());
     report.torque_fluid_mean = bodies_[k].torque.mean().value_or(Vec3d::Zero());

@@ -48,7 +48,7 @@ class RunTally {
   private:
     struct BodyMeans {
         TimeMean<Vec3d> force{Vec3d::Zero()}, torque{Vec3d::Zero()};
-        TimeMean<double> draft{0.0};
+        TimeMean<double> waterline{0.0}, draft{0.0};
         Vec3d velocity_before = Vec3d::Zero(); ///< the last quarter of the run [m/s]
     };
     struct JointMeans {
@@ -73,7 +73,7 @@ class RunTally {
     double most_disagreement_ = 0.0;
     double compression_max_ = 0.0, next_draft_ = 0.0;
     StageSeconds seconds_;
-    TimeMean<double> compression_{0.0}, waterline_{0.0};
+    TimeMean<double> compression_{0.0};
     std::vector<TimeMean<Vec3d>> wall_forces_;
     std::vector<TimeMean<double>> probes_;
     std::vector<BodyMeans> bodies_;

@@ -87,6 +87,8 @@ struct MaxOf {
     }
 };
 
+struct SoundingLine;
+
 struct FluidWorld::Impl {
     explicit Impl(const FluidWorldSettings& settings);
 
@@ -179,8 +181,18 @@ struct FluidWorld::Impl {
     enum class Readable { any, free, bulk };
     [[nodiscard]] Readable readable(std::size_t i) const;
     [[nodiscard]] double gauge_pressure(std::size_t i) const;
+
+    // waterline.cpp
     [[nodiscard]] bool line_passes_body(std::span<const BodyState> at, double x, double y, double away) const;
     [[nodiscard]] bool touches_body(std::span<const BodyState> at, const Vec3d& point, double away) const;
+    template <class Visit>
+    void sound(const FluidWorld& world, std::span<const BodyState> at, bool is_fine, double away, double clear,
+               Visit&& visit) const;
+    [[nodiscard]] bool has_pairs() const;
+    [[nodiscard]] bool wall_parts(const Vec3d& a, const Vec3d& b) const;
+    [[nodiscard]] std::vector<std::uint32_t> column_at(double x, double y, double beyond) const;
+    [[nodiscard]] std::vector<std::vector<std::uint32_t>> particles_at(std::span<const BodyState> at) const;
+    [[nodiscard]] std::optional<SoundingLine> line_at(double x, double y, double level) const;
 
     // forces_on_bodies.cpp, surface_pressure.cpp
     [[nodiscard]] bool is_touched(std::size_t owner) const;

@@ -55,7 +55,7 @@ FluidForces FluidWorld::fluid_forces(int body) const
     const ByCause<Wrench> by_cause = impl_->wrenches(impl_->walls.size() + k);
     const bool has_level = is_level(impl_->settings.gravity) && impl_->is_touched(impl_->walls.size() + k);
     FluidForces forces;
-    forces.hydrostatic = impl_->hydrostatic(k, has_level ? waterline(impl_->states) : std::nullopt);
+    forces.hydrostatic = impl_->hydrostatic(k, has_level ? waterlines(impl_->states)[k] : std::nullopt);
     forces.dynamic = by_cause.pressure - forces.hydrostatic;
     forces.viscous = by_cause.viscous;
     forces.packing = by_cause.packing;

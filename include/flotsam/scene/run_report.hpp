@@ -13,14 +13,14 @@ namespace flotsam {
 /// rotation is that of the scene's shape. Water lines and drafts are measured where gravity points down the z axis.
 struct BodyReport {
     std::string name;
-    std::optional<double> mass;              ///< [kg]
-    double volume = 0.0;                     ///< [m^3] (2-D: per metre)
-    Vec3d position = Vec3d::Zero();          ///< [m]
-    Vec3d rotation_deg = Vec3d::Zero();      ///< rotation vector
-    Vec3d velocity = Vec3d::Zero();          ///< [m/s]
-    double tilt_deg = 0.0;                   ///< between the shape's z axis and the world's
-    std::optional<double> waterline;         ///< mean height of the undisturbed water [m]
-    std::optional<double> draft;             ///< mean of waterline - lowest point [m]
+    std::optional<double> mass;         ///< [kg]
+    double volume = 0.0;                ///< [m^3] (2-D: per metre)
+    Vec3d position = Vec3d::Zero();     ///< [m]
+    Vec3d rotation_deg = Vec3d::Zero(); ///< rotation vector
+    Vec3d velocity = Vec3d::Zero();     ///< [m/s]
+    double tilt_deg = 0.0;              ///< between the shape's z axis and the world's
+    std::optional<double> waterline;    ///< mean height of the undisturbed water that it is in [m]
+    std::optional<double> draft;        ///< mean of waterline - lowest point [m]
     /// Of the exact mesh in the pose it ended in, a vessel with the water that is in her [m]; nothing: it sinks.
     std::optional<double> exact_draft;
     Vec3d force_fluid_mean = Vec3d::Zero();  ///< [N]

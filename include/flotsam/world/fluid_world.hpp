@@ -150,6 +150,12 @@ class FluidWorld {
     /// Height [m] of the undisturbed water: median of levels taken away from the bodies (`states`: where they are), or,
     /// where bodies leave no room for that, of what is open between them; nothing where there is no open water.
     [[nodiscard]] std::optional<double> waterline(std::span<const BodyState> states) const;
+    /// The same of the water that each body is in, where several basins stand at different levels. Waters are one that
+    /// hang together through particles a spacing or more below the lower level, so that an overflow joins none; what
+    /// lies under a ceiling is no surface. A body without water at it is in that straight under its middle; one that
+    /// stands in two waters has the median of both, if both are deep enough. What is in no water, or in one without
+    /// a surface, has waterline(states).
+    [[nodiscard]] std::vector<std::optional<double>> waterlines(std::span<const BodyState> states) const;
     /// What prepare noticed, a sentence each: fluid cut by bodies, thin solids sampled in one layer, ...
     [[nodiscard]] const std::vector<std::string>& notes() const;
     /// Of positions and velocities in order of creation, and of the time: equal states hash equal.
