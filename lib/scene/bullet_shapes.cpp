@@ -104,10 +104,9 @@ bool is_identity(const Pose& pose)
     return pose.position.norm() < 1e-12 && pose.orientation.angularDistance(Quatd::Identity()) < 1e-12;
 }
 
-/// A slab behind one side of a box, as thick as a tenth of the box and reaching over its edges.
-void add_slab(const Aabb& box, int axis, bool high, btCompoundShape& compound, BulletShapes& into)
+/// A slab behind one side of a box, reaching over its edges.
+void add_slab(const Aabb& box, int axis, bool high, double thickness, btCompoundShape& compound, BulletShapes& into)
 {
-    const double thickness = 0.1 * box.size().maxCoeff();
     Vec3d half = 0.5 * box.size() + Vec3d::Constant(thickness);
     half[axis] = 0.5 * thickness;
     Pose pose;
@@ -161,18 +160,19 @@ btCollisionShape* add_body_shape(const PreparedBody& body, bool moves, BulletSha
     return into.shapes.back().get();
 }
 
-btCollisionShape* add_wall_shape(const SceneWall& wall, const PreparedWall& prepared, BulletShapes& into)
+btCollisionShape* add_wall_shape(const SceneWall& wall, const PreparedWall& prepared, double gap, BulletShapes& into)
 {
     if (wall.mesh) {
         btTriangleMesh* triangles = add_triangles(prepared.mesh, into);
         const double size = bounds(prepared.mesh).size().maxCoeff();
         return keep(std::make_unique<btBvhTriangleMeshShape>(triangles, true), size, into);
     }
+    const double thickness = std::min(0.1 * wall.box.size().maxCoeff(), gap);
     auto compound = std::make_unique<btCompoundShape>();
     const std::array names{"-x", "+x", "-y", "+y", "-z", "+z"};
     for (int side = 0; side < 6; ++side)
         if (std::find(wall.open.begin(), wall.open.end(), names[static_cast<std::size_t>(side)]) == wall.open.end())
-            add_slab(wall.box, side / 2, side % 2 == 1, *compound, into);
+            add_slab(wall.box, side / 2, side % 2 == 1, thickness, *compound, into);
     into.shapes.push_back(std::move(compound));
     return into.shapes.back().get();
 }

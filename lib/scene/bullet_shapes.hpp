@@ -19,9 +19,9 @@ struct BulletShapes {
 /// convex hull if that is at most 2 % larger, else the mesh itself (for `moves`, GImpact).
 btCollisionShape* add_body_shape(const PreparedBody& body, bool moves, BulletShapes& into);
 
-/// Collision shape of a wall in the world: slabs behind the closed sides of a box, which nothing tunnels through, or
-/// the triangles of a mesh.
-btCollisionShape* add_wall_shape(const SceneWall& wall, const PreparedWall& prepared, BulletShapes& into);
+/// Collision shape of a wall in the world: slabs behind the closed sides of a box, a tenth of it thick and no
+/// thicker than the `gap` [m] to other tanks, which nothing tunnels through, or the triangles of a mesh.
+btCollisionShape* add_wall_shape(const SceneWall& wall, const PreparedWall& prepared, double gap, BulletShapes& into);
 
 [[nodiscard]] inline btScalar to_scalar(double value)
 {

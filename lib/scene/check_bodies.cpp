@@ -1,6 +1,7 @@
 #include "scene/prepared_scene.hpp"
 #include "scene/probe_points.hpp"
 #include "scene/refuse.hpp"
+#include "scene/tanks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -165,6 +166,21 @@ Passage passage_out_of(const Tank& tank, const PlacedBody& body)
     return out;
 }
 
+/// The box walls that bound the tank that the body is in, or that it reaches out of the least.
+std::vector<std::size_t> boxes_around(const SceneFile& scene, const PlacedBody& body)
+{
+    std::vector<std::size_t> nearest;
+    double least = 1e300;
+    for (std::vector<std::size_t>& tank : tanks_of_boxes(scene)) {
+        double out = -1e300;
+        for (const std::size_t wall : tank) out = std::max(out, passage_through(scene.walls[wall], body.reach).depth);
+        if (out >= least) continue;
+        least = out;
+        nearest = std::move(tank);
+    }
+    return nearest;
+}
+
 /// All that is outside a container is solid to the fluid, so a body must be inside of every one.
 void check_container(const SceneFile& scene, const Tank& tank, const PlacedBody& body, double tolerance)
 {
@@ -201,11 +217,12 @@ void check_bounds_of_walls(const SceneFile& scene, const PreparedScene& prepared
 void check_walls(const SceneFile& scene, const PreparedScene& prepared, const std::vector<Tank>& tanks,
                  const PlacedBody& body, double tolerance)
 {
-    for (const Tank& tank : tanks)
-        if (tank.holds_water)
-            check_container(scene, tank, body, tolerance);
-        else
-            check_obstacle(scene, tank, body, tolerance);
+    const std::vector<std::size_t> around = boxes_around(scene, body);
+    for (std::size_t k = 0; k < tanks.size(); ++k)
+        if (!tanks[k].holds_water)
+            check_obstacle(scene, tanks[k], body, tolerance);
+        else if (scene.walls[k].mesh || std::find(around.begin(), around.end(), k) != around.end())
+            check_container(scene, tanks[k], body, tolerance);
     check_bounds_of_walls(scene, prepared, body);
 }
 

@@ -3,6 +3,7 @@
 #include "scene/memory_need.hpp"
 #include "scene/mesh_loader.hpp"
 #include "scene/refuse.hpp"
+#include "scene/tanks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,25 +45,44 @@ Aabb clipped(Aabb block, const SceneWall& wall)
     return block;
 }
 
+/// What of the block is in each tank; all of it where there is no box wall.
+std::vector<Aabb> within_tanks(const Aabb& block, const SceneFile& scene,
+                               const std::vector<std::vector<std::size_t>>& tanks)
+{
+    if (tanks.empty()) return {block};
+    std::vector<Aabb> parts;
+    for (const std::vector<std::size_t>& tank : tanks) {
+        Aabb part = block;
+        for (const std::size_t wall : tank) part = clipped(part, scene.walls[wall]);
+        if (!part.empty() && part.size().minCoeff() > 0.0) parts.push_back(part);
+    }
+    return parts;
+}
+
 void add_blocks(const SceneFile& scene, PreparedScene& prepared)
 {
+    const std::vector<std::vector<std::size_t>> tanks = tanks_of_boxes(scene);
     for (std::size_t k = 0; k < scene.fluid.blocks.size(); ++k) {
-        SceneBlock block = scene.fluid.blocks[k];
-        for (const SceneWall& wall : scene.walls)
-            if (!wall.mesh) block.box = clipped(block.box, wall);
+        const SceneBlock& given = scene.fluid.blocks[k];
+        const std::vector<Aabb> parts = within_tanks(given.box, scene, tanks);
         const std::string name = "fluids[0].blocks[" + std::to_string(k) + "]";
-        if (block.box.empty() || !(block.box.size().minCoeff() > 0.0)) {
+        if (parts.empty() || !(given.box.size().minCoeff() > 0.0)) {
             prepared.notes.push_back(name + " lies outside the walls and was left out");
             continue;
         }
-        const double left = block.box.size().prod() / scene.fluid.blocks[k].box.size().prod();
+        double left = 0.0;
+        for (const Aabb& part : parts) {
+            SceneBlock block = given;
+            block.box = part;
+            prepared.blocks.push_back(block);
+            left += part.size().prod() / given.box.size().prod();
+        }
         if (left < 1.0 - 1e-9) {
             std::ostringstream note;
             note.precision(3);
             note << name << " reaches through the walls; the " << 100.0 * (1.0 - left) << " % outside were cut away";
             prepared.notes.push_back(note.str());
         }
-        prepared.blocks.push_back(block);
     }
 }
 
@@ -99,6 +119,7 @@ PreparedScene prepare_scene(const SceneFile& scene)
     PreparedScene prepared;
     add_blocks(scene, prepared);
     add_walls(scene, prepared);
+    check_gaps_of_tanks(scene, prepared);
     add_fluid_meshes(scene, prepared);
     refuse_too_many_particles(scene, prepared); // before bodies are cut into triangles as small as the particles
     for (std::size_t k = 0; k < scene.bodies.size(); ++k) prepared.bodies.push_back(prepare_body(scene, k, prepared));

@@ -1,8 +1,12 @@
 #include "scene/scene_world.hpp"
 
 #include "flotsam/core/contracts.hpp"
+#include "scene/tanks.hpp"
 
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+
+#include <algorithm>
+#include <limits>
 
 namespace flotsam::scene {
 namespace {
@@ -116,8 +120,12 @@ void SceneWorld::add_walls(const SceneFile& scene, const PreparedScene& prepared
         const int number =
             wall.mesh ? fluid_.add_wall(prepared.walls[k].mesh, wall.side) : fluid_.add_box_wall(wall.box, wall.open);
         fluid_.name_wall(number, prepared.walls[k].name);
+        double gap = std::numeric_limits<double>::infinity(); // to other tanks
+        for (std::size_t other = 0; other < scene.walls.size(); ++other)
+            gap = std::min(gap, gap_of_tanks(scene, k, other).value_or(gap));
         // Bullet multiplies frictions: 1 leaves a body's own against walls
-        walls_.push_back(rigid_body(0.0, Vec3d::Zero(), Pose(), 1.0, add_wall_shape(wall, prepared.walls[k], shapes_)));
+        walls_.push_back(
+            rigid_body(0.0, Vec3d::Zero(), Pose(), 1.0, add_wall_shape(wall, prepared.walls[k], gap, shapes_)));
         world_.addRigidBody(walls_.back().get());
     }
 }

@@ -2,6 +2,7 @@
 
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/geometry/mass_properties.hpp"
+#include "world/box_rooms.hpp"
 #include "world/usable_mesh.hpp"
 
 #include <algorithm>
@@ -25,6 +26,24 @@ bool inside_box_wall(const Wall& wall, const Vec3d& p, int dimensions)
         if (!wall.open[low + 1] && !(p[axis] <= wall.box->max[axis])) return false;
     }
     return true;
+}
+
+/// Whether the point is in a tank: in one box wall and in all that are not tanks of their own beside it.
+bool inside_box_walls(const std::vector<Wall>& walls, const Vec3d& p, int dimensions)
+{
+    const auto holds = [&](const Wall& tank) {
+        return std::all_of(walls.begin(), walls.end(), [&](const Wall& wall) {
+            return !wall.box || inside_box_wall(wall, p, dimensions) ||
+                   (&wall != &tank && parted_by(*tank.box, tank.open, *wall.box, wall.open, dimensions));
+        });
+    };
+    bool is_any = false;
+    for (const Wall& wall : walls) {
+        if (!wall.box) continue;
+        if (holds(wall)) return true;
+        is_any = true;
+    }
+    return !is_any;
 }
 
 /// What a wall holds that is closed on all sides [m^3; in 2-D m^2]; nothing for others, and for meshes in 2-D.
@@ -123,12 +142,9 @@ void FluidWorld::Impl::choose_wall_sides()
 
 bool FluidWorld::Impl::in_solid(const Vec3d& point) const
 {
+    if (!inside_box_walls(walls, point, settings.dimensions)) return true;
     for (const Wall& wall : walls) {
-        if (wall.box) {
-            if (!inside_box_wall(wall, point, settings.dimensions)) return true;
-            continue;
-        }
-        if (wall.side == WallSide::both) continue;
+        if (wall.box || wall.side == WallSide::both) continue;
         if (wall.query->inside(point) == (wall.side == WallSide::outside)) return true;
     }
     for (std::size_t k = 0; k < bodies.size(); ++k)

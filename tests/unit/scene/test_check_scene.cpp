@@ -272,3 +272,17 @@ TEST_CASE("a closed tank filled from a mesh that touches it holds the water", "[
     })";
     CHECK(checked(text, {}, directory.path() / "scene.json").bodies.size() == 1);
 }
+
+TEST_CASE("tanks that are too close to each other are refused by name", "[scene]")
+{
+    const std::string left = R"({"name": "left", "box": {"min": [0, 0], "max": [1, 0.8], "open": ["+z"]}})";
+    const auto right = [](const std::string& from) {
+        return R"({"name": "right", "box": {"min": [)" + from + R"(, 0], "max": [2, 0.8], "open": ["+z"]}})";
+    };
+    for (const std::string from : {"1", "1.06"})
+        check_refused(kRaft, {"walls=[" + left + "," + right(from) + "]"},
+                      {"walls[0] (\"left\") and walls[1] (\"right\")", "4 particle spacings (80 mm)"});
+    CHECK(checked(kRaft, {"walls=[" + left + "," + right("1.08") + "]"}).bodies.size() == 1);
+    check_refused(kRaft, {"walls=[" + left + "," + right("1.08") + "]", "bodies.raft.position=[0.9,0.3]"},
+                  {"\"raft\"", "overlaps walls[0]", "+x side"});
+}

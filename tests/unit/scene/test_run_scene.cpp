@@ -239,6 +239,46 @@ TEST_CASE("drafts are reported where gravity points down only", "[scene][run]")
     CHECK_FALSE(free.bodies[0].exact_draft);
 }
 
+TEST_CASE("two tanks side by side have water lines and forces of their own", "[scene][run]")
+{
+    // One block goes through both, and what is between them is cut away.
+    const std::string text = R"({"flotsam": 1, "dimensions": 2, "particle_spacing": 0.02, "duration": 0.4,
+      "start": "at_rest", "fluids": [{"blocks": [{"min": [0, 0], "max": [1.1, 0.2]},
+        {"min": [0, 0.2], "max": [0.4, 0.3]}]}],
+      "walls": [{"name": "left", "box": {"min": [0, 0], "max": [0.4, 0.6], "open": ["+z"]}},
+                {"name": "right", "box": {"min": [0.5, 0], "max": [1.1, 0.6], "open": ["+z"]}}],
+      "bodies": [{"name": "a", "shape": {"box": [0.18, 0.1]}, "density": 500, "position": [0.2, 0.3]},
+                 {"name": "b", "shape": {"box": [0.18, 0.1]}, "density": 500, "position": [0.8, 0.2]}]})";
+    const RunReport report = ran(text, {});
+    CHECK(report.leaked == 0);
+    const double rho_g = 1000.0 * 9.81;
+    // To half a spacing of the lattice; what bodies displace is cut away.
+    CHECK(report.bodies.at(0).waterline.value() == Approx(0.3).margin(0.01));
+    CHECK(report.bodies.at(1).waterline.value() == Approx(0.2).margin(0.01));
+    for (const BodyReport& body : report.bodies) {
+        CHECK(body.draft.value() == Approx(0.05).margin(0.01));
+        CHECK(body.exact_draft.value() == Approx(0.05).margin(0.003)); // a degree of tilt lowers a corner by 1.6 mm
+    }
+    // Each bears its own water and body; the swell of a tenth of a second leaves some per cent
+    CHECK(-report.wall_force_mean.at(0).z() == Approx(rho_g * 0.4 * 0.3).epsilon(0.05));
+    CHECK(-report.wall_force_mean.at(1).z() == Approx(rho_g * 0.6 * 0.2).epsilon(0.05));
+    CHECK(std::abs(report.wall_force_mean[0].x()) < 0.05 * rho_g * 0.4 * 0.3);
+    CHECK(std::abs(report.wall_force_mean[1].x()) < 0.05 * rho_g * 0.6 * 0.2);
+}
+
+TEST_CASE("boxes that overlap bound one tank together", "[scene][run]")
+{
+    const auto particles = [&](const std::string& walls) {
+        return ran(kRaft, {"walls=" + walls, "bodies=[]", "probes=[]", "duration=0.01"}).fluid_particles;
+    };
+    const std::string inner = R"({"box": {"min": [0.2, 0], "max": [0.8, 0.8], "open": ["+z"]}})";
+    const std::string outer = R"({"box": {"min": [0, 0], "max": [1, 0.8], "open": ["+z"]}})";
+    const std::string right = R"({"box": {"min": [0.5, 0], "max": [1, 0.8], "open": ["+z"]}})";
+    CHECK(particles("[" + inner + "]") == 30 * 15);
+    CHECK(particles("[" + inner + "," + outer + "]") == 30 * 15);
+    CHECK(particles("[" + inner + "," + right + "]") == 15 * 15);
+}
+
 TEST_CASE("blocks of fluid that overlap fill their union once", "[scene][run]")
 {
     const std::string first = R"({"min": [0, 0], "max": [0.4, 0.3]})",
