@@ -16,6 +16,7 @@ constexpr double kPiece = 0.7;                 ///< longest edge of a part of a 
 constexpr double kOverlap = 0.2;               ///< that solids may have in each other: a contact that yields
 constexpr double kNarrow = 0.9, kWide = 1.3;   ///< gaps are films whole, and not at all
 constexpr double kTaken = 0.75, kFree = 1.15;  ///< distance to the nearest particle at which it has the place, or not
+constexpr double kTight = 0.02, kLoose = 0.15; ///< gaps in a wedge on which its particles do not press, and do
 constexpr double kReach = 1.2;                 ///< of a part's neighbours in a film
 constexpr double kAtRim = 1.6, kWeights = 2.0; ///< of a rim's particles: that it is wet, that they count
 
@@ -81,7 +82,7 @@ void WaterFilms::fill(const WaterFilmSettings& settings, double dt, const FilmWa
             while (last < facing_.size() && facing_[last].set == facing_[first].set) ++last;
             const std::span<const Facing> parts(facing_.data() + first, last - first);
             const Rim rim = weigh_rim(parts, touches.size());
-            if (!(rim.wet > 0.0)) continue;
+            if (!(rim.wet + rim.wedge > 0.0)) continue;
             Around around = pressure_around(touches, water);
             around.pressure -= inflow_head(parts, rim, solids[pair.a], solids[pair.b]);
             press(parts, rim, around, dt, pair.a, pair.b, solids);
@@ -223,7 +224,7 @@ WaterFilms::Rim WaterFilms::weigh_rim(std::span<const Facing> parts, std::size_t
     const double spacing = settings_.spacing, reach = kWeights * spacing;
     weight_.resize(particles);
     std::fill(weight_.begin(), weight_.end(), 0.0);
-    double wet = 0.0, rim = 0.0;
+    double wet = 0.0, wedge = 0.0, rim = 0.0;
     for (const Facing& part : parts) {
         if (!part.is_rim) continue;
         const double area = part.share * part.area;
@@ -231,13 +232,14 @@ WaterFilms::Rim WaterFilms::weigh_rim(std::span<const Facing> parts, std::size_t
         if (!(particles_.nearest(part.middle, kAtRim * spacing) < kAtRim * spacing)) continue;
         const double step = 1.0 - smooth_step((part.slope - kStep) / (kWedge - kStep));
         wet += step * area;
+        wedge += (1.0 - step) * area;
         particles_.for_near(part.middle, reach, [&](std::size_t k, double distance_sq) {
-            weight_[k] += step * area * std::pow(1.0 - distance_sq / (reach * reach), 2);
+            weight_[k] += area * std::pow(1.0 - distance_sq / (reach * reach), 2);
         });
     }
     if (!(rim > 0.0)) return {};
     const double width = (settings_.dimensions == 2 ? 0.5 : 0.4) * kReach * spacing; // of the parts that count as rim
-    return {wet / rim, wet / width};
+    return {wet / rim, wedge / rim, (wet + wedge) / width};
 }
 
 /// Particles in the corner of two solids carry about twice the pressure of the water, and one at a wall half as much
@@ -306,7 +308,8 @@ void WaterFilms::press(std::span<const Facing> parts, const Rim& rim, const Arou
         const double head = settings_.rest_density * settings_.gravity.dot(part.center - around.place);
         const double depth = settings_.gravity.dot(part.center) - top_;
         const double most = kMostOfStill * settings_.rest_density * std::max(0.0, depth);
-        const double target = rim.wet * std::clamp(around.pressure + head, 0.0, most);
+        const double apex = 1.0 - smooth_step((part.gap / settings_.spacing - kTight) / (kLoose - kTight));
+        const double target = (rim.wet + rim.wedge * apex) * std::clamp(around.pressure + head, 0.0, most);
         double& pressure = faces.pressure[part.part];
         if (step_ - faces.last_steps[part.part] > 1) pressure = 0.0;
         faces.last_steps[part.part] = step_;

@@ -50,8 +50,10 @@ struct FilmWater {
 ///     p(x) = wet (P + rho0 g . (x - X))
 ///
 /// with P and X the means of the particles next to the film that touch no solid, and `wet` the part of the film's rim
-/// that has particles: there is air, or no way in, at the rest of it. A rim at which the faces part slowly counts as
-/// having none: particles that are pressed into a wedge push its faces apart as a film would. Of P, rho0 u^2 / 2 goes
+/// that has particles: there is air, or no way in, at the rest of it. A rim at which the faces part slowly counts where
+/// they are closer than a tenth of a spacing: particles that are pressed into a wedge push the rest of its faces apart
+/// as a film would. (A disc of 6 or 12 spacings in radius on the floor lacks the pressure of a strip of 1.5 or 2.3
+/// spacings.) Of P, rho0 u^2 / 2 goes
 /// where the gap opens, u the speed at which water flows in at the rim. Films follow P with a delay, since what they do
 /// is not part of the pressure system (as rows of it, they compressed the particles at their rims by a third: there is
 /// no place for what flows in). p is at most 1.5 of that of still water under the highest particle: else solids that
@@ -116,7 +118,8 @@ class WaterFilms {
     };
     /// The rim of a film.
     struct Rim {
-        double wet = 0.0;    ///< the part of it that has particles
+        double wet = 0.0;    ///< the part of it that has particles, in front of a step
+        double wedge = 0.0;  ///< in a wedge
         double length = 0.0; ///< of that part [m; in 2-D their number]
     };
     /// Pressure of the water around a film [Pa], at a place.

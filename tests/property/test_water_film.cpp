@@ -62,6 +62,26 @@ TEST_CASE("what lies flush on the floor presses on it with its weight less the w
     CHECK(report.bodies.at(0).force_fluid_mean.z() == Approx(kDisplaced).epsilon(0.12));
 }
 
+TEST_CASE("round bodies on the floor feel their displaced weight, and come up if they are lighter", "[property]")
+{
+    constexpr double kRadius = 0.12, kOfDisc = 1000.0 * 9.81 * 3.1415927 * kRadius * kRadius;
+    const double density = GENERATE(3000.0, 500.0);
+    std::ostringstream scene;
+    scene << R"({"flotsam": 1, "dimensions": 2, "particle_spacing": 0.02, "duration": 1.5,
+        "fluids": [{"blocks": [{"min": [0, 0], "max": [0.8, 0.6]}]}],
+        "walls": [{"box": {"min": [0, 0], "max": [0.8, 1.0], "open": ["+z"]}}],
+        "bodies": [{"name": "log", "shape": {"disc": 0.12}, "position": [0.4, 0.12], "density": )"
+          << density << "}]}";
+    const BodyReport log = run_text(scene.str()).bodies.at(0);
+    CAPTURE(density);
+    if (density < 1000.0) {
+        CHECK(log.position.z() > 0.4);
+        return;
+    }
+    CHECK(std::abs(log.position.z() - kRadius) < 0.002);
+    CHECK(log.force_fluid_mean.z() == Approx(kOfDisc).epsilon(0.15)); // a quarter of it without a film in the wedges
+}
+
 TEST_CASE("a puddle does not lift what it could not carry", "[property]")
 {
     const std::string scene = R"({"flotsam": 1, "particle_spacing": 0.02, "duration": 0.8,
