@@ -175,7 +175,8 @@ void RunTally::note_loads(std::size_t k, const BodyReport& body, std::vector<std
 {
     constexpr double kNoted = 0.05; // of the weight
     const double seconds = bodies_[k].force.seconds();
-    if (!body.exact_draft || !(seconds > 0.0)) return;
+    const bool is_free = scene_.bodies[k].motion == SceneBody::Motion::dynamic;
+    if (!is_free || !body.exact_draft || !(seconds > 0.0)) return;
     const double mass = body.mass.value_or(0.0), weight = mass * scene_.gravity.norm();
     const double risen = body.velocity.z() - bodies_[k].velocity_before.z();
     const double load = mass * risen / seconds - body.force_fluid_mean.z() + weight;

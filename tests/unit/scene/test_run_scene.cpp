@@ -350,4 +350,5 @@ TEST_CASE("a body that something else holds is noted, and its exact draft is wit
     const RunReport held = ran(kCrate, {R"(bodies.0.lock=["z"])", "bodies.0.position=[0.5,0.5,0.25]"}); // under water
     CHECK(noted(held));
     CHECK(held.bodies.at(0).exact_draft.has_value());
+    CHECK_FALSE(noted(ran(kCrate, {R"(bodies.0.motion="fixed")", "bodies.0.position=[0.5,0.5,0.25]"})));
 }
