@@ -25,7 +25,7 @@ Examples:
 
 A run writes DIR/report.json (what happened, in numbers), DIR/history.csv (a row per frame) and, where the scene's
 "output" asks for them, DIR/particles.pvd and DIR/bodies.pvd for ParaView and DIR/pictures/*.png. An older output in DIR
-is replaced when the run is done.
+is replaced when the run is done, if nothing else is there.
 
 Exit codes: 0 done, 1 the run failed, 2 the input was refused.)";
 

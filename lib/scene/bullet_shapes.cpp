@@ -1,5 +1,7 @@
 #include "scene/bullet_shapes.hpp"
 
+#include "world/box_rooms.hpp"
+
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <LinearMath/btConvexHullComputer.h>
 
@@ -169,9 +171,9 @@ btCollisionShape* add_wall_shape(const SceneWall& wall, const PreparedWall& prep
     }
     const double thickness = std::min(0.1 * wall.box.size().maxCoeff(), gap);
     auto compound = std::make_unique<btCompoundShape>();
-    const std::array names{"-x", "+x", "-y", "+y", "-z", "+z"};
+    const OpenSides open = open_sides(wall.open);
     for (int side = 0; side < 6; ++side)
-        if (std::find(wall.open.begin(), wall.open.end(), names[static_cast<std::size_t>(side)]) == wall.open.end())
+        if (!open[static_cast<std::size_t>(side)])
             add_slab(wall.box, side / 2, side % 2 == 1, thickness, *compound, into);
     into.shapes.push_back(std::move(compound));
     return into.shapes.back().get();

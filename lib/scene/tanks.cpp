@@ -4,7 +4,6 @@
 #include "world/box_rooms.hpp"
 
 #include <algorithm>
-#include <string>
 
 namespace flotsam::scene {
 namespace {
@@ -12,22 +11,13 @@ namespace {
 /// Spacings: the support of the kernel, and the layer of samples behind each wall.
 constexpr double kLeastGap = 4.0;
 
-OpenSides open_sides(const SceneWall& wall)
-{
-    const std::array<std::string, 6> sides{"-x", "+x", "-y", "+y", "-z", "+z"};
-    OpenSides open{};
-    for (std::size_t k = 0; k < sides.size(); ++k)
-        open[k] = std::find(wall.open.begin(), wall.open.end(), sides[k]) != wall.open.end();
-    return open;
-}
-
 } // namespace
 
 std::optional<double> gap_of_tanks(const SceneFile& scene, std::size_t a, std::size_t b)
 {
     const SceneWall &one = scene.walls[a], &other = scene.walls[b];
     if (a == b || one.mesh || other.mesh) return std::nullopt;
-    return parted_by(one.box, open_sides(one), other.box, open_sides(other), scene.dimensions);
+    return parted_by(one.box, open_sides(one.open), other.box, open_sides(other.open), scene.dimensions);
 }
 
 std::vector<std::vector<std::size_t>> tanks_of_boxes(const SceneFile& scene)

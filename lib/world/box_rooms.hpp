@@ -3,13 +3,26 @@
 #include "flotsam/core/types.hpp"
 #include "flotsam/geometry/triangle_mesh.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace flotsam {
 
 using OpenSides = std::array<bool, 6>; ///< -x +x -y +y -z +z
+
+/// Of a box wall, by their names.
+[[nodiscard]] inline OpenSides open_sides(const std::vector<std::string>& names)
+{
+    const std::array<const char*, 6> sides{"-x", "+x", "-y", "+y", "-z", "+z"};
+    OpenSides open{};
+    for (std::size_t k = 0; k < sides.size(); ++k)
+        open[k] = std::find(names.begin(), names.end(), sides[k]) != names.end();
+    return open;
+}
 
 /// How far two boxes are apart along the axis along which closed sides of both part them [m]; nothing if none does.
 /// Boxes that are parted are tanks of their own; what is within several others is in a room that they bound together.

@@ -120,11 +120,10 @@ int FluidWorld::add_box_wall(const Aabb& given, const std::vector<std::string>& 
         box.max.y() = 0.5;
     }
     require((box.size().array() > 0.0).all(), "a box wall's min must be below its max [m]");
-    static const std::array<std::string, 6> kSides = {"-x", "+x", "-y", "+y", "-z", "+z"};
     const int number = add_wall(container_box(box, open), WallSide::inside);
     Wall& wall = impl_->walls.back();
     wall.box = box;
-    for (std::size_t k = 0; k < 6; ++k) wall.open[k] = std::find(open.begin(), open.end(), kSides[k]) != open.end();
+    wall.open = open_sides(open);
     return number;
 }
 

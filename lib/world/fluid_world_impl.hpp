@@ -17,6 +17,7 @@
 #include "sph/pressure/pressure_system.hpp"
 #include "sph/pressure/response_preconditioner.hpp"
 #include "world/boundary_calibration.hpp"
+#include "world/box_rooms.hpp"
 #include "world/keep_ledger.hpp"
 #include "world/sheet_screen.hpp"
 #include "world/wall_guard.hpp"
@@ -36,8 +37,8 @@ struct Wall {
     TriangleMesh mesh;
     std::string name; ///< in notes
     WallSide side = WallSide::automatic;
-    std::optional<Aabb> box;       ///< of a box wall
-    std::array<bool, 6> open = {}; ///< of a box wall: -x +x -y +y -z +z
+    std::optional<Aabb> box; ///< of a box wall
+    OpenSides open = {};     ///< of a box wall
     std::unique_ptr<SurfaceQuery> query;
     std::unique_ptr<SurfaceSampler> sampler; ///< of parts that no water has come near yet; null: there are none
     bool is_noted_thin = false;

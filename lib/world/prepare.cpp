@@ -2,7 +2,6 @@
 
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/geometry/mass_properties.hpp"
-#include "world/box_rooms.hpp"
 #include "world/usable_mesh.hpp"
 
 #include <algorithm>

@@ -109,7 +109,10 @@ void FluidWorld::Impl::read_bodies(double dt, Bodies& port)
     for (std::size_t k = 0; k < bodies.size(); ++k)
         if (!bodies[k].mesh.empty()) require_usable(read_states[k], k); // others were removed
     if (settings.dimensions == 2)
-        for (BodyState& state : read_states) keep_in_plane(state.start), keep_in_plane(state.predicted);
+        for (BodyState& state : read_states) {
+            keep_in_plane(state.start);
+            keep_in_plane(state.predicted);
+        }
     states.swap(read_states);
     note_other_gravity(port);
 }

@@ -1,5 +1,6 @@
 #include "flotsam/geometry/shapes.hpp"
 #include "flotsam/world/fluid_world.hpp"
+#include "support/box_mesh.hpp"
 #include "support/catch.hpp"
 #include "world/wall_guard.hpp"
 
@@ -7,6 +8,7 @@
 #include <random>
 
 using namespace flotsam;
+using namespace flotsam::test;
 
 namespace {
 
@@ -56,11 +58,6 @@ TriangleMesh torus(double radius, double tube)
         }
     }
     return mesh;
-}
-
-TriangleMesh box_mesh(const Aabb& box)
-{
-    return transformed(tessellate(BoxShape{box.size()}, 1.0), {box.center(), Quatd::Identity()});
 }
 
 /// The rectangle x = 0, |y|, |z| <= half: 2 triangles without thickness.

@@ -9,7 +9,7 @@ namespace flotsam {
 /// Throws OutputError; the old file is then as it was.
 void write_text_atomically(const std::filesystem::path& file, std::string_view text);
 
-/// Of what an output is; one of another kind is not replaced.
+/// What an output is of; one of another kind is not replaced.
 enum class OutputKind { run, hydrostatics };
 
 /// A directory of results that appears whole or not at all: everything is written to a temporary directory beside the

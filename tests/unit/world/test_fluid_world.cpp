@@ -1,6 +1,7 @@
 #include "flotsam/geometry/mass_properties.hpp"
 #include "flotsam/geometry/shapes.hpp"
 #include "flotsam/world/fluid_world.hpp"
+#include "support/box_mesh.hpp"
 #include "support/catch.hpp"
 #include "support/free_bodies.hpp"
 
@@ -42,11 +43,6 @@ std::uint64_t hash_after_steps(const FluidWorldSettings& settings)
     FreeBodies bodies({free_box(edges, 100.0, Vec3d(0.2, 0, kDepth))}, settings.gravity);
     for (int k = 0; k < 5; ++k) fluid.step(fluid.allowed_time_step(), bodies);
     return fluid.state_hash();
-}
-
-TriangleMesh box_mesh(const Aabb& box)
-{
-    return transformed(tessellate(BoxShape{box.size()}, 1.0), {box.center(), Quatd::Identity()});
 }
 
 double volume(const TriangleMesh& mesh)

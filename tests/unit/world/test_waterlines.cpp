@@ -1,5 +1,6 @@
 #include "flotsam/geometry/shapes.hpp"
 #include "flotsam/world/fluid_world.hpp"
+#include "support/box_mesh.hpp"
 #include "support/catch.hpp"
 #include "support/free_bodies.hpp"
 
@@ -17,11 +18,6 @@ FluidWorldSettings settings(int dimensions)
     s.particle_spacing = kSpacing;
     s.threads = 1;
     return s;
-}
-
-TriangleMesh box_mesh(const Aabb& box)
-{
-    return transformed(tessellate(BoxShape{box.size()}, 1.0), {box.center(), Quatd::Identity()});
 }
 
 /// The water's surface is that of a lattice of particles.
