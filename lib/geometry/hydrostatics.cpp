@@ -1,6 +1,9 @@
 #include "flotsam/geometry/hydrostatics.hpp"
 
 #include "flotsam/core/contracts.hpp"
+#include "flotsam/geometry/mass_properties.hpp"
+#include "geometry/mesh_connectivity.hpp"
+#include "geometry/mesh_crossing.hpp"
 #include "geometry/plane_cut.hpp"
 #include "geometry/submerged_moments.hpp"
 
@@ -8,6 +11,27 @@
 #include <cmath>
 
 namespace flotsam {
+namespace {
+
+std::size_t index(int triangle)
+{
+    return static_cast<std::size_t>(triangle);
+}
+
+/// Some triangles of a mesh, as one part.
+TriangleMesh with_triangles(const TriangleMesh& mesh, const std::vector<int>& triangles)
+{
+    TriangleMesh result;
+    result.vertices.reserve(3 * triangles.size());
+    for (const int t : triangles) {
+        const int first = static_cast<int>(result.vertices.size());
+        for (int k = 0; k < 3; ++k) result.vertices.push_back(mesh.corner(index(t), k));
+        result.triangles.push_back({first, first + 1, first + 2});
+    }
+    return result;
+}
+
+} // namespace
 
 Submerged submerged_part(const TriangleMesh& closed, const Pose& pose, double water_level)
 {
@@ -28,6 +52,31 @@ Waterplane waterplane(const TriangleMesh& closed, const Pose& pose, double water
 double lowest_point(const TriangleMesh& mesh, const Pose& pose)
 {
     return height_range(mesh, pose).low;
+}
+
+TriangleMesh outer_surface(const TriangleMesh& closed)
+{
+    constexpr double kTouching = 1e-6; // of the bounds' diagonal
+    const std::vector<std::vector<int>> parts = connected_parts(closed, triangle_adjacency(closed)).triangles;
+    TriangleMesh outward = closed; // every part
+    std::vector<int> cavities;     // triangles
+    std::vector<const std::vector<int>*> solids;
+    for (const std::vector<int>& part : parts) {
+        const bool faces_outward = mass_properties(with_triangles(closed, part)).volume >= 0.0;
+        if (faces_outward) {
+            solids.push_back(&part);
+            continue;
+        }
+        cavities.insert(cavities.end(), part.begin(), part.end());
+        for (const int t : part) std::swap(outward.triangles[index(t)][1], outward.triangles[index(t)][2]);
+    }
+    if (cavities.empty()) return closed;
+    std::vector<int> outer;
+    for (const std::vector<int>* solid : solids) {
+        const PartSide side = side_of_part(outward, *solid, cavities, kTouching * bounds(closed).size().norm());
+        if (side.inside <= side.outside) outer.insert(outer.end(), solid->begin(), solid->end());
+    }
+    return with_triangles(closed, outer);
 }
 
 // The water line spans no area with an origin in it. Outside lies to the right of the way along, so what a

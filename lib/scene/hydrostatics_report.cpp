@@ -111,16 +111,19 @@ HydrostaticsReport report_hydrostatics(const HydrostaticsRequest& request)
     const auto [mesh, check] = scene::read_solid(request.mesh, {.scale = request.scale});
     const MassProperties solid = mass_properties(mesh);
     FloatingBody body;
-    body.mesh = mesh;
+    body.mesh = outer_surface(mesh);
     body.mass = request.mass ? *request.mass : *request.density * solid.volume;
     body.center_of_mass = request.center_of_mass.value_or(solid.center_of_mass);
     body.water_density = request.water_density;
 
-    refuse_if_massless(request, body, solid.volume);
+    const double room = mass_properties(body.mesh).volume;
+    refuse_if_massless(request, body, room);
     HydrostaticsReport report;
     report.version = kVersion;
     report.mesh = request.mesh;
     report.notes = check.notes;
+    if (body.mesh.triangles.size() < mesh.triangles.size())
+        report.notes.push_back("no water comes into its cavities: they displace water, too");
     report.triangles = mesh.triangles.size();
     report.volume = solid.volume;
     report.mass = body.mass;
@@ -128,7 +131,7 @@ HydrostaticsReport report_hydrostatics(const HydrostaticsRequest& request)
     report.center_of_mass = body.center_of_mass;
     if (report_vessel(request, body, report)) return report;
     const auto as_modelled = flotation(body, Quatd::Identity());
-    if (!as_modelled) refuse_as_sinking(request, body, solid.volume);
+    if (!as_modelled) refuse_as_sinking(request, body, room);
     report.as_modelled = *as_modelled;
     report.stable = *stable_poses(body);
     if (request.heel) report.righting_arms = righting_arms(body, Quatd::Identity(), radians(*request.heel));

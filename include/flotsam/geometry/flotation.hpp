@@ -9,7 +9,7 @@
 namespace flotsam {
 
 /// A rigid body in still water, with nothing but gravity and buoyancy on it. Water fills every hole of the mesh up to
-/// its level: no air is shut in.
+/// its level: no air is shut in, unless the mesh is an outer_surface.
 struct FloatingBody {
     TriangleMesh mesh;                    ///< closed, normals outward [m]
     double mass = 0.0;                    ///< [kg], > 0

@@ -179,6 +179,34 @@ TEST_CASE("hydrostatics of an open boat are with her hollow dry", "[cli][hydrost
     CHECK(contains(founders.err, "it sinks"));
 }
 
+TEST_CASE("no water comes into a cavity", "[cli][hydrostatics]")
+{
+    const TemporaryDirectory directory("flotsam_cli_hydrostatics_cavity");
+    std::string text;
+    for (const double half : {0.5, 0.4})
+        for (const int k : {0, 1, 2, 3, 4, 5, 6, 7})
+            text += "v " + std::to_string(k & 1 ? half : -half) + " " + std::to_string(k & 2 ? half : -half) + " " +
+                    std::to_string(k & 4 ? half : -half) + "\n";
+    text += "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7\n";
+    text += "f 9 13 15 11\nf 10 12 16 14\nf 9 10 14 13\nf 11 15 16 12\nf 9 11 12 10\nf 13 14 16 15\n";
+    directory.write("hollow.obj", text);
+    // 0.488 m^3 of steel plate would sink without the cavity; of 800 kg/m^3 it floats on a corner as a cube of 0.39
+    // does.
+    const Outcome light = run_program(directory, "hydrostatics hollow.obj --density 800 --out light");
+    CHECK(light.code == 0);
+    CHECK(contains(light.out, "no water comes into its cavities"));
+    CHECK_FALSE(contains(light.out, "hollow dry"));
+    const auto report = numbers_of(directory, "light");
+    CHECK(report["vessel"] == false);
+    CHECK(report["stable_poses"].size() == 8);
+    const Outcome steel = run_program(directory, "hydrostatics hollow.obj --density 2000 --out steel");
+    CHECK(steel.code == 0);
+    CHECK(numbers_of(directory, "steel")["as_modelled"]["draft"].get<double>() == Approx(0.976).margin(1e-6));
+    const Outcome sinks = run_program(directory, "hydrostatics hollow.obj --density 2100 --out sinks");
+    CHECK(sinks.code == 2);
+    CHECK(contains(sinks.err, "in 1 m^3 are 1024.8 kg/m^3"));
+}
+
 TEST_CASE("without gnuplot everything else is there and one sentence names the package", "[cli][hydrostatics]")
 {
     const TemporaryDirectory directory("flotsam_cli_hydrostatics_gnuplot");

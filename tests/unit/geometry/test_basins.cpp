@@ -63,12 +63,23 @@ TEST_CASE("a heeled boat, and a ball with a cavity, displace their hollows", "[g
     const double exact = equilibrium_draft(outside, pose.orientation, 0.12).value();
     CHECK(vessel_draft(boat(), pose, 0.15, 0.12).value() == Approx(exact).epsilon(1e-9));
 
-    TriangleMesh ball = meshes::sphere(0.5, 30), cavity = meshes::sphere(0.48, 30);
-    const double whole = meshes::volume(ball);
-    const int first = static_cast<int>(ball.vertices.size());
-    ball.vertices.insert(ball.vertices.end(), cavity.vertices.begin(), cavity.vertices.end());
-    for (const auto& t : cavity.triangles) ball.triangles.push_back({t[0] + first, t[2] + first, t[1] + first});
+    const TriangleMesh solid = meshes::sphere(0.5, 30);
+    const TriangleMesh ball = joined(solid, flipped(meshes::sphere(0.48, 30)));
+    const double whole = meshes::volume(solid);
     CHECK(vessel_draft(ball, Pose{}, 0.1, 0.5 * whole).value() == Approx(0.5).epsilon(1e-6));
+}
+
+TEST_CASE("water comes to the outer surface alone", "[geometry][hydrostatics]")
+{
+    const TriangleMesh hull = meshes::box(Vec3d(-1, -1, -1), Vec3d(1, 1, 1));
+    const TriangleMesh beside = meshes::box(Vec3d(2, 0, 0), Vec3d(3, 1, 1));
+    const TriangleMesh cavity = flipped(meshes::box(Vec3d(-0.8, -0.8, -0.8), Vec3d(0.8, 0.8, 0.8)));
+    const TriangleMesh ballast = meshes::box(Vec3d(-0.5, -0.5, -0.7), Vec3d(0.5, 0.5, -0.5));
+    const TriangleMesh buoys = joined(joined(joined(hull, cavity), ballast), beside);
+    CHECK(outer_surface(hull).triangles.size() == hull.triangles.size());
+    CHECK(meshes::volume(outer_surface(joined(hull, beside))) == Approx(9.0));
+    CHECK(meshes::volume(outer_surface(buoys)) == Approx(9.0));
+    CHECK(meshes::volume(outer_surface(boat())) == Approx(meshes::volume(boat())));
 }
 
 TEST_CASE("what lies in a boat is told from what lies around her", "[geometry][hydrostatics]")
