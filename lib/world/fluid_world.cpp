@@ -48,19 +48,6 @@ FluidWorld::~FluidWorld() = default;
 FluidWorld::FluidWorld(FluidWorld&&) noexcept = default;
 FluidWorld& FluidWorld::operator=(FluidWorld&&) noexcept = default;
 
-/// Water that was poured twice into one place would burst out of it: what came first stays.
-void FluidWorld::Impl::seed_where_dry(FluidSeed seed)
-{
-    const auto is_wet = [&](const Vec3d& point) {
-        return std::any_of(seeds.begin(), seeds.end(),
-                           [&](const FluidSeed& earlier) { return earlier.covers && earlier.covers(point); });
-    };
-    if (const std::size_t twice = std::erase_if(seed.positions, is_wet); twice > 0)
-        notes.push_back(std::to_string(twice) + " fluid particles lay in an earlier block or mesh of fluid too and "
-                                                "were left out");
-    seeds.push_back(std::move(seed));
-}
-
 void FluidWorld::Impl::require_still_if_at_rest(const Vec3d& velocity) const
 {
     require(settings.start == FluidWorldSettings::Start::as_given || velocity.isZero(0.0),
@@ -77,7 +64,7 @@ void FluidWorld::add_block(const Aabb& block, const Vec3d& velocity)
     const auto covers = [block, is_flat](const Vec3d& p) {
         return block.contains(is_flat ? Vec3d(p.x(), block.center().y(), p.z()) : p);
     };
-    impl_->seed_where_dry({fill_box(block, impl_->spacing(), impl_->settings.dimensions), velocity, true, covers});
+    impl_->seeds.push_back({fill_box(block, impl_->spacing(), impl_->settings.dimensions), velocity, true, covers});
 }
 
 void FluidWorld::add_fluid_mesh(const TriangleMesh& closed, const Vec3d& velocity)
@@ -88,7 +75,7 @@ void FluidWorld::add_fluid_mesh(const TriangleMesh& closed, const Vec3d& velocit
     require_solid(closed, "a mesh of water");
     const auto query = std::make_shared<SurfaceQuery>(closed);
     const auto covers = [query](const Vec3d& p) { return query->bounds().contains(p) && query->inside(p); };
-    impl_->seed_where_dry({fill_mesh(*query, impl_->spacing(), impl_->settings.dimensions), velocity, true, covers});
+    impl_->seeds.push_back({fill_mesh(*query, impl_->spacing(), impl_->settings.dimensions), velocity, true, covers});
 }
 
 void FluidWorld::add_particles(std::span<const Vec3d> positions, const Vec3d& velocity)

@@ -18,6 +18,7 @@
 #include "sph/pressure/response_preconditioner.hpp"
 #include "world/boundary_calibration.hpp"
 #include "world/box_rooms.hpp"
+#include "world/enclosed_water.hpp"
 #include "world/keep_ledger.hpp"
 #include "world/sheet_screen.hpp"
 #include "world/wall_guard.hpp"
@@ -150,6 +151,7 @@ struct FluidWorld::Impl {
     /// Scratch of sorting, forces and the pressure system until they are written; between steps new_position has where
     /// the particles were when the pairs were found.
     std::vector<Vec4> new_position, new_velocity;
+    EnclosedWater enclosed_water;
     PressureSystem::Scratch pressure_scratch; ///< the forces' before; change: by pressure [m/s]
     std::vector<Scalar> multiplier, source;   ///< source: scratch of sorting before
     std::vector<Scalar> fluid_diagonal, coupled_diagonal;
@@ -207,8 +209,8 @@ struct FluidWorld::Impl {
     void prepare(Bodies& port, const std::function<void(const SettleProgress&)>& on_round = {});
     void choose_wall_sides();
     void place_water();
-    void seed_where_dry(FluidSeed seed);
     [[nodiscard]] std::vector<Vessel> find_vessels() const;
+    void leave_out_doubles(std::size_t seed, const std::vector<Vessel>& vessels, std::vector<char>& keep);
     void bail_out(const FluidSeed& seed, const std::vector<Vessel>& vessels, std::vector<char>& keep);
     void cut_and_place_fluid();
     void look_around(StepReport& report);
@@ -283,6 +285,7 @@ struct FluidWorld::Impl {
     [[nodiscard]] double mean_length(std::span<const Vec4> vectors);
     [[nodiscard]] double part_of_cold_residual(double scale);
     [[nodiscard]] double velocity_tolerance(double dt);
+    [[nodiscard]] bool is_enclosed(const SolveResult& of_shift);
     [[nodiscard]] bool shift_if_possible(const PressureSystem& system, StepReport& report);
     void advance(double dt, Bodies& port, StepReport& report);
     void guard_walls(double dt, Bodies& port, StepReport& report);

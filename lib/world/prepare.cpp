@@ -184,6 +184,32 @@ void FluidWorld::Impl::bail_out(const FluidSeed& seed, const std::vector<Vessel>
     }
 }
 
+/// Water that was poured twice into one place would burst out of it: takes out of `keep` what lies in an earlier block
+/// or mesh of water, unless that is bailed out there.
+void FluidWorld::Impl::leave_out_doubles(std::size_t seed, const std::vector<Vessel>& vessels, std::vector<char>& keep)
+{
+    const auto is_dry = [&](const FluidSeed& water, const Aabb& extent, const Vec3d& point) {
+        return water.cut && std::any_of(vessels.begin(), vessels.end(), [&](const Vessel& vessel) {
+                   return surrounds(extent, vessel.bounds, settings.dimensions) &&
+                          vessel.basins.holds(point, 0.01 * spacing());
+               });
+    };
+    std::size_t doubles = 0;
+    for (std::size_t k = 0; k < seed; ++k) {
+        if (!seeds[k].covers) continue;
+        const Aabb extent = extent_of(seeds[k].positions);
+        const std::vector<Vec3d>& points = seeds[seed].positions;
+        for (std::size_t i = 0; i < keep.size(); ++i) {
+            if (keep[i] == 0 || !seeds[k].covers(points[i]) || is_dry(seeds[k], extent, points[i])) continue;
+            keep[i] = 0;
+            ++doubles;
+        }
+    }
+    if (doubles > 0)
+        notes.push_back(std::to_string(doubles) + " fluid particles lay in an earlier block or mesh of fluid too and "
+                                                  "were left out");
+}
+
 /// Bodies with basins whose rims are above the water around them.
 std::vector<Vessel> FluidWorld::Impl::find_vessels() const
 {
@@ -211,11 +237,13 @@ void FluidWorld::Impl::cut_and_place_fluid()
     std::size_t cut_away = 0;
     std::vector<char> keep;
     const std::vector<Vessel> vessels = find_vessels();
-    for (const FluidSeed& seed : seeds) {
+    for (std::size_t number = 0; number < seeds.size(); ++number) {
+        const FluidSeed& seed = seeds[number];
         keep.assign(seed.positions.size(), 1);
         if (seed.cut) {
             workers.for_each(keep.size(), [&](std::size_t k) { keep[k] = in_solid(seed.positions[k]) ? 0 : 1; });
             cut_away += static_cast<std::size_t>(std::count(keep.begin(), keep.end(), 0));
+            leave_out_doubles(number, vessels, keep);
             bail_out(seed, vessels, keep);
         }
         const Vec4 velocity(static_cast<Scalar>(seed.velocity.x()), static_cast<Scalar>(seed.velocity.y()),
