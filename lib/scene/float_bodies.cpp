@@ -1,5 +1,7 @@
 #include "flotsam/core/contracts.hpp"
 #include "flotsam/geometry/equilibrium_poses.hpp"
+#include "flotsam/geometry/mass_properties.hpp"
+#include "flotsam/geometry/volume_samples.hpp"
 #include "geometry/basin_query.hpp"
 #include "geometry/wetted_surface.hpp"
 #include "scene/prepared_scene.hpp"
@@ -20,10 +22,10 @@ Aabb reach_of(const PreparedBody& body)
     return bounds(transformed(body.mesh, body.start));
 }
 
-/// As the search for a stable pose sees it. In 2-D a log that is so long that it turns in the plane only.
+/// As the search for a stable pose sees it, dry inside. In 2-D a log that is so long that it turns in the plane only.
 FloatingBody floating(const PreparedBody& body, const SceneFile& scene)
 {
-    FloatingBody result{body.mesh, body.mass, Vec3d::Zero(), scene.fluid.density, -scene.gravity.z()};
+    FloatingBody result{outer_surface(body.mesh), body.mass, Vec3d::Zero(), scene.fluid.density, -scene.gravity.z()};
     if (scene.dimensions == 3) return result;
     const Vec3d size = bounds(body.mesh).size();
     const double stretch = 10.0 * std::max(size.x(), size.z()) / size.y();
@@ -32,14 +34,66 @@ FloatingBody floating(const PreparedBody& body, const SceneFile& scene)
     return result;
 }
 
-/// As it is turned, at the draft of a vessel whose basins are dry; nothing for what is none, sinks or founders.
-std::optional<Pose> pose_as_vessel(const PreparedBody& body, const SceneFile& scene, double level)
+/// Water that a scene puts into a body.
+struct Cargo {
+    std::vector<TriangleMesh*> meshes;
+    std::vector<SceneBlock*> blocks;
+    double mass = 0.0; ///< [kg]; in 2-D per metre
+
+    [[nodiscard]] bool empty() const { return meshes.empty() && blocks.empty(); }
+    void move(double up)
+    {
+        for (SceneBlock* block : blocks)
+            block->box = {block->box.min + up * Vec3d::UnitZ(), block->box.max + up * Vec3d::UnitZ()};
+        for (TriangleMesh* mesh : meshes)
+            *mesh = transformed(std::move(*mesh), {up * Vec3d::UnitZ(), Quatd::Identity()});
+    }
+};
+
+/// Of the blocks and meshes of fluid those whose middle is in a hollow of the body, as it stands, and that are no wider
+/// than it is.
+Cargo cargo_of(const PreparedBody& body, const SceneFile& scene, PreparedScene& prepared)
 {
+    Cargo cargo;
     const TriangleMesh hull = hull_of(body.mesh, scene.dimensions);
+    const auto level = WettedSurface(hull, body.start).level_of_basins(lowest_point(body.mesh, body.start));
+    if (!level) return cargo;
+    const BasinQuery hollows(hull, body.start, *level);
+    const Aabb reach = reach_of(body).inflated(scene.particle_spacing);
+    const auto is_aboard = [&](const Aabb& box) {
+        const bool is_within =
+            reach.min.x() <= box.min.x() && box.max.x() <= reach.max.x() &&
+            (scene.dimensions == 2 || (reach.min.y() <= box.min.y() && box.max.y() <= reach.max.y()));
+        return is_within && hollows.holds(box.center());
+    };
+    const auto add = [&](const std::vector<Vec3d>& points) {
+        const auto count =
+            std::count_if(points.begin(), points.end(), [&](const Vec3d& p) { return hollows.holds(p); });
+        cargo.mass +=
+            scene.fluid.density * std::pow(scene.particle_spacing, scene.dimensions) * static_cast<double>(count);
+    };
+    for (SceneBlock& block : prepared.blocks) {
+        if (!is_aboard(block.box)) continue;
+        cargo.blocks.push_back(&block);
+        add(fill_box(block.box, scene.particle_spacing, scene.dimensions));
+    }
+    for (TriangleMesh& mesh : prepared.fluid_meshes) {
+        if (!is_aboard(bounds(mesh))) continue;
+        cargo.meshes.push_back(&mesh);
+        add(fill_mesh(SurfaceQuery(mesh), scene.particle_spacing, scene.dimensions));
+    }
+    return cargo;
+}
+
+/// As it is turned, at the draft of a vessel with nothing but `cargo` [kg] in her basins; nothing for what is none,
+/// sinks or founders.
+std::optional<Pose> pose_as_vessel(const PreparedBody& body, const SceneFile& scene, double level, double cargo)
+{
+    const TriangleMesh hull = hull_of(outer_surface(body.mesh), scene.dimensions);
     Pose pose = body.start;
     pose.position.z() += level - lowest_point(body.mesh, body.start);
     if (!WettedSurface(hull, pose).level_of_basins(level)) return std::nullopt;
-    const auto draft = vessel_draft(hull, pose, level, body.mass / scene.fluid.density);
+    const auto draft = vessel_draft(hull, pose, level, (body.mass + cargo) / scene.fluid.density);
     if (!draft) return std::nullopt;
     pose.position.z() -= *draft;
     return WettedSurface(hull, pose).has_basin(level) ? std::optional<Pose>(pose) : std::nullopt;
@@ -47,16 +101,17 @@ std::optional<Pose> pose_as_vessel(const PreparedBody& body, const SceneFile& sc
 
 /// Where the body may float in water whose surface is at `level`, the best first: the stable pose that it comes to from
 /// the one that it is given, unless it may not turn about both horizontal axes, and its height as it is turned; a
-/// vessel at her draft as she is turned. Empty for one that sinks.
+/// vessel at her draft as she is turned, with `cargo` [kg] of water in her. Empty for what sinks.
 std::vector<Pose> poses_afloat(const PreparedBody& body, const std::array<bool, 6>& lock, const SceneFile& scene,
-                               double level)
+                               double level, double cargo)
 {
     const FloatingBody afloat = floating(body, scene);
     const Quatd& given = body.start.orientation;
     const bool turns = scene.dimensions == 2 ? !lock[4] : !lock[3] && !lock[4];
     std::vector<Pose> poses;
-    if (const auto vessel = pose_as_vessel(body, scene, level)) return {*vessel};
-    if (!(body.mass < scene.fluid.density * body.volume)) return {};
+    if (const auto vessel = pose_as_vessel(body, scene, level, cargo)) return {*vessel};
+    if (cargo > 0.0) return {};
+    if (!(afloat.mass < afloat.water_density * mass_properties(afloat.mesh).volume)) return {};
     try {
         // What lies as well in any direction (a disc, a ball) is left as it is turned.
         const int all_directions = scene.dimensions == 2 ? 1 : 2;
@@ -69,13 +124,19 @@ std::vector<Pose> poses_afloat(const PreparedBody& body, const std::array<bool, 
     return poses;
 }
 
-/// Top of the water that the middle of `body` stands over or in: that of the highest block or mesh, of those that reach
-/// down to the body and those on top of them. Water that begins above the body is another tank's.
-std::optional<double> level_at(const PreparedScene& prepared, const Aabb& body)
+/// Top of the water, other than its cargo, that the middle of `body` stands over or in: that of the highest block or
+/// mesh, of those that reach down to the body and those on top of them. Water that begins above the body is another
+/// tank's.
+std::optional<double> level_at(const PreparedScene& prepared, const Aabb& body, const Cargo& cargo)
 {
+    const auto is_aboard = [](const auto& cargo_items, const auto& water) {
+        return std::find(cargo_items.begin(), cargo_items.end(), &water) != cargo_items.end();
+    };
     std::vector<Aabb> waters;
-    for (const SceneBlock& block : prepared.blocks) waters.push_back(block.box);
-    for (const TriangleMesh& mesh : prepared.fluid_meshes) waters.push_back(bounds(mesh));
+    for (const SceneBlock& block : prepared.blocks)
+        if (!is_aboard(cargo.blocks, block)) waters.push_back(block.box);
+    for (const TriangleMesh& mesh : prepared.fluid_meshes)
+        if (!is_aboard(cargo.meshes, mesh)) waters.push_back(bounds(mesh));
     const Vec3d middle = body.center();
     std::erase_if(
         waters, [&](const Aabb& water) { return !water.contains(Vec3d(middle.x(), middle.y(), water.center().z())); });
@@ -159,14 +220,19 @@ std::string float_body(std::size_t k, const SceneFile& scene, PreparedScene& pre
     if (is_joined(k, scene)) return "a joint holds it";
     if (scene.bodies[k].lock[2]) return "it is locked along z";
     if (const PreparedBody* other = touching.neighbour_of(k)) return "it touches " + other->name;
-    const std::optional<double> level = level_at(prepared, reach_of(body));
+    Cargo cargo = cargo_of(body, scene, prepared);
+    const std::optional<double> level = level_at(prepared, reach_of(body), cargo);
     if (!level) return "no block or mesh of fluid is under its middle";
     const Pose given = body.start;
-    std::string obstacle = "it is not lighter than the water";
-    for (const Pose& pose : poses_afloat(body, scene.bodies[k].lock, scene, *level)) {
+    std::string obstacle = cargo.mass > 0.0 ? "it would not float upright with the water that is in it"
+                                            : "it is not lighter than the water";
+    for (const Pose& pose : poses_afloat(body, scene.bodies[k].lock, scene, *level, cargo.mass)) {
         body.start = pose;
         const PreparedBody* other = touching.neighbour_of(k);
-        if (other == nullptr && is_within_walls(scene, prepared, body)) return {};
+        if (other == nullptr && is_within_walls(scene, prepared, body)) {
+            cargo.move(pose.position.z() - given.position.z());
+            return {};
+        }
         obstacle = "where it would float it meets " + (other != nullptr ? other->name : "a wall");
     }
     body.start = given;

@@ -331,6 +331,22 @@ TEST_CASE("a vessel of sheet metal starts at rest afloat and dry", "[scene][run]
     CHECK(noted("bodies[0] (\"tub\") starts dry: "));
 }
 
+TEST_CASE("a vessel starts at rest with the water that is poured into her", "[scene][run]")
+{
+    const TemporaryDirectory directory("flotsam_test_vessel_cargo");
+    const double exact = (3.0 + 0.26 * 0.16 * 40.0) / 60.0;
+    // 0.04 m in her, above the pool, or where its water would be without her, which stays outside all the same.
+    const std::vector<std::pair<double, std::string>> cases{{0.4, "[0.27,0.22,0.36],\"max\":[0.53,0.38,0.4]"},
+                                                            {0.12, "[0.27,0.22,0.08],\"max\":[0.53,0.38,0.12]"}};
+    for (const auto& [height, cargo] : cases) {
+        const RunReport report =
+            ran(tub_text(directory, height, "at_rest"),
+                {R"(fluids.0.blocks=[{"min":[0,0,0],"max":[0.8,0.6,0.16]},{"min":)" + cargo + "}]"});
+        CHECK(report.bodies.at(0).exact_draft.value() == Approx(exact).epsilon(0.02)); // whole particles
+        CHECK(report.bodies.at(0).draft.value() == Approx(exact).margin(0.005));
+    }
+}
+
 TEST_CASE("notes call bodies and walls by their names", "[scene][run]")
 {
     const RunReport report = ran(kCrate, {"bodies.0.shape.box=[0.3,0.04,0.04]", "bodies.0.position=[0.5,0.5,0.8]"});
