@@ -55,8 +55,8 @@ struct Waterplane {
 /// above the water, a cavity. `pose` places mesh points in the world.
 [[nodiscard]] std::vector<char> basins(const TriangleMesh& closed, const Pose& pose, double water_level);
 
-/// What of a closed mesh water outside can come to: without cavities (parts that face inward, as check_mesh leaves them)
-/// and what lies in them.
+/// What of a closed mesh water outside can come to: without cavities (parts that face inward, as check_mesh leaves
+/// them) and what lies in them.
 [[nodiscard]] TriangleMesh outer_surface(const TriangleMesh& closed);
 
 /// As equilibrium_draft, of a vessel whose basins hold nothing but what `displaced_volume` [m^3] counts with her: they

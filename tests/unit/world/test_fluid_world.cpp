@@ -543,7 +543,7 @@ TEST_CASE("a sheet of water that falls to the floor keeps its density, in the co
         largest = std::max(largest, report.compression_max);
         CHECK(report.converged);
     }
-    CHECK(mean < 0.05); // in the step of the impact
+    CHECK(mean < 0.05);    // in the step of the impact
     CHECK(largest < 0.25); // 1 where the corners keep three particles in one place
 }
 
