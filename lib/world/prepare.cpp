@@ -386,7 +386,7 @@ void FluidWorld::Impl::guard_relaxation()
     motion.resize(owners());
     guarded.assign(owners(), Wrench{});
     for (std::size_t k = 0; k < bodies.size(); ++k) motion[walls.size() + k] = {states[k].pose, states[k].pose, {}};
-    guard.stop(fluid.position, new_position, new_velocity, motion, fluid.particle_mass, workers, guarded);
+    guard.stop(fluid.position, new_position, new_velocity, motion, fluid.particle_mass, workers, nullptr, guarded);
 }
 
 } // namespace flotsam

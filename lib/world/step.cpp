@@ -357,8 +357,12 @@ void FluidWorld::Impl::guard_walls(double dt, Bodies& port, StepReport& report)
         motion[owner] = {state.pose, moved(state.pose, twist, dt), twist};
         bodies[k].last_pose = motion[owner].after;
     }
-    const GuardReport guard_report =
-        guard.stop(fluid.position, new_position, new_velocity, motion, fluid.particle_mass, workers, guarded);
+    const auto answer_impulses = [&](std::span<const Wrench> impulses, std::span<Twist> changes) {
+        respond(port, impulses, changes);
+    };
+    const WallGuard::Response response = answer_impulses;
+    const GuardReport guard_report = guard.stop(fluid.position, new_position, new_velocity, motion, fluid.particle_mass,
+                                                workers, &response, guarded);
     report.leaks_stopped = guard_report.stopped;
     report.leaked = guard_report.leaked;
     for (std::size_t k = 0; k < owners(); ++k) {

@@ -41,7 +41,7 @@ void WallGuard::change(std::size_t k, const GuardedSurface& surface, double part
 
 GuardReport WallGuard::stop(std::span<const Vec4> from, std::span<Vec4> to, std::span<Vec4> velocity,
                             std::span<const GuardedMotion> motion, double particle_mass, const Workers& workers,
-                            std::span<Wrench> impulses)
+                            const Response* response, std::span<Wrench> impulses)
 {
     FLOTSAM_ASSERT(motion.size() == surfaces_.size() && impulses.size() == surfaces_.size(), "one of each per surface");
     turn_.resize(motion.size());
@@ -51,22 +51,74 @@ GuardReport WallGuard::stop(std::span<const Vec4> from, std::span<Vec4> to, std:
     workers.for_chunks(from.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         Stopped& out = chunks_[chunk];
         out.report = {};
-        out.reactions.clear();
-        if (out.reactions.capacity() == 0) out.reactions.reserve(64); // few particles of a chunk are stopped at once
+        out.stops.clear();
+        out.pushes.clear();
+        if (out.stops.capacity() == 0) { // few particles of a chunk are stopped at once
+            out.stops.reserve(64);
+            out.pushes.reserve(64);
+        }
         find_near(from.subspan(begin, end - begin), to.subspan(begin, end - begin), motion, out.near);
         for (std::size_t i = begin; i < end; ++i) {
             if (!to[i].allFinite()) continue; // counted by the step as physics in trouble
             if (!may_hit(from[i].head<3>().cast<double>(), to[i].head<3>().cast<double>(), motion, out.near)) continue;
-            stop_one(from[i], to[i], velocity[i], motion, particle_mass, out);
+            stop_one(i, from[i], to[i], velocity[i], motion, particle_mass, out);
         }
     });
+    const std::size_t chunks = Workers::chunk_count(from.size());
+    shares_.assign(motion.size(), 1.0);
+    if (response != nullptr) find_shares(chunks, motion, particle_mass, *response, impulses);
+    std::fill(impulses.begin(), impulses.end(), Wrench{});
     GuardReport report;
-    for (std::size_t chunk = 0; chunk < Workers::chunk_count(from.size()); ++chunk) {
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
         report.stopped += chunks_[chunk].report.stopped;
         report.leaked += chunks_[chunk].report.leaked;
-        for (const Reaction& r : chunks_[chunk].reactions) impulses[r.surface] += r.impulse;
+        give(chunks_[chunk], motion, particle_mass, velocity, impulses);
     }
     return report;
+}
+
+/// Sets shares_. A share s of all pushes J at once changes the kinetic energy by s^2 (P + G . Y G) / 2 - s P, with
+/// P = sum J^2 / m, and G their sum on an owner of mobility Y: it is least at s = P / (P + G . Y G).
+void WallGuard::find_shares(std::size_t chunks, std::span<const GuardedMotion> motion, double particle_mass,
+                            const Response& response, std::span<Wrench> whole)
+{
+    std::fill(whole.begin(), whole.end(), Wrench{});
+    lost_.assign(motion.size(), 0.0);
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+        for (const Push& push : chunks_[chunk].pushes) {
+            const Vec3d arm = push.at - motion[push.surface].before.position;
+            whole[push.surface] += {push.impulse, arm.cross(push.impulse)};
+            lost_[push.surface] += push.impulse.squaredNorm() / particle_mass;
+        }
+    }
+    if (std::all_of(lost_.begin(), lost_.end(), [](double energy) { return energy == 0.0; })) return;
+    changes_.assign(motion.size(), Twist{});
+    response(whole, changes_);
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+        const double gained = whole[k].linear.dot(changes_[k].linear) + whole[k].angular.dot(changes_[k].angular);
+        if (lost_[k] > 0.0 && gained > 0.0) shares_[k] = lost_[k] / (lost_[k] + gained);
+    }
+}
+
+/// Gives the surfaces their shares, and the particles what is left. Momentum is kept, and angular momentum: what
+/// putting a particle back takes of it goes to the surface that has it.
+void WallGuard::give(const Stopped& chunk, std::span<const GuardedMotion> motion, double particle_mass,
+                     std::span<Vec4> velocity, std::span<Wrench> impulses) const
+{
+    std::size_t next = 0;
+    for (const Stop& stop : chunk.stops) {
+        Vec3d v = stop.velocity, spin = stop.spin;
+        for (; next < stop.pushes; ++next) {
+            const Push& push = chunk.pushes[next];
+            const double share = shares_[push.surface];
+            const Vec3d given = share * push.impulse;
+            impulses[push.surface] += {given, (push.at - motion[push.surface].before.position).cross(given)};
+            if (share < 1.0) v += (1.0 - share) / particle_mass * push.impulse;
+            spin -= push.at.cross(given) / particle_mass;
+        }
+        velocity[stop.particle].head<3>() = v.cast<Scalar>();
+        impulses[stop.keeper] += {Vec3d::Zero(), particle_mass * (spin - stop.position.cross(v))};
+    }
 }
 
 /// Whether the surface is out of reach by the sphere about its owner's centre that holds it, which no turn changes.
@@ -152,19 +204,15 @@ std::optional<WallGuard::Hit> WallGuard::first_hit(const Vec3d& from, const Vec3
     return first;
 }
 
-void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<const GuardedMotion> motion,
-                         double particle_mass, Stopped& out) const
+void WallGuard::stop_one(std::size_t i, const Vec4& from, Vec4& to, const Vec4& velocity,
+                         std::span<const GuardedMotion> motion, double particle_mass, Stopped& out) const
 {
     constexpr int kMaxBounces = 4; // a corner of three walls takes three
     const Vec3d a = from.head<3>().cast<double>();
     Vec3d b = to.head<3>().cast<double>();
     Vec3d v = velocity.head<3>().cast<double>();
     std::optional<std::size_t> stopped_by;
-    Vec3d spin = b.cross(v); // angular momentum per mass that no surface has been given yet
-    const auto give = [&](std::size_t k, const Vec3d& at, const Vec3d& impulse) {
-        out.reactions.push_back({k, {impulse, (at - motion[k].before.position).cross(impulse)}});
-        spin -= at.cross(impulse) / particle_mass;
-    };
+    const Vec3d spin = b.cross(v);
     for (int bounce = 0; bounce <= kMaxBounces; ++bounce) {
         const auto hit = first_hit(a, b, motion);
         if (!hit) break;
@@ -175,7 +223,7 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
         const double approach = (v - wall_velocity).dot(hit->normal);
         if (approach < 0.0) {
             v -= approach * hit->normal;
-            give(hit->surface, at, particle_mass * approach * hit->normal);
+            out.pushes.push_back({hit->surface, at, particle_mass * approach * hit->normal});
         }
         // Slide along the surface: what is beyond it of the way is taken off, and a little more.
         const double beyond = (b - at).dot(hit->normal);
@@ -189,7 +237,7 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
             const GuardedMotion& keeper = motion[*stopped_by];
             b = go_with(*stopped_by);
             const Vec3d keeper_velocity = keeper.twist.at(at - keeper.before.position);
-            give(*stopped_by, at, particle_mass * (v - keeper_velocity));
+            out.pushes.push_back({*stopped_by, at, particle_mass * (v - keeper_velocity)});
             v = keeper_velocity;
             if (other && !stands(keeper)) ++out.report.leaked;
         }
@@ -197,9 +245,7 @@ void WallGuard::stop_one(const Vec4& from, Vec4& to, Vec4& velocity, std::span<c
     if (!stopped_by) return;
     ++out.report.stopped;
     to.head<3>() = b.cast<Scalar>();
-    velocity.head<3>() = v.cast<Scalar>();
-    // Putting the particle back moved it off the straight line: the surface takes the difference, so that none is lost.
-    out.reactions.push_back({*stopped_by, {Vec3d::Zero(), particle_mass * (spin - b.cross(v))}});
+    out.stops.push_back({i, *stopped_by, b, v, spin, out.pushes.size()});
 }
 
 } // namespace flotsam

@@ -257,7 +257,7 @@ TEST_CASE("the guard alone gives the walls what it takes from the particles", "[
     before = velocity;
     straight = to;
     std::vector<Wrench> impulses(2);
-    const GuardReport report = guard.stop(from, to, velocity, motion, mass, workers, impulses);
+    const GuardReport report = guard.stop(from, to, velocity, motion, mass, workers, nullptr, impulses);
     CHECK(report.stopped > 500);
     CHECK(report.leaked == 0);
     Vec3d lost = Vec3d::Zero();
@@ -306,8 +306,63 @@ TEST_CASE("a body that closes on a wall pushes no particle through it", "[walls]
     std::vector<Vec4> to = from;
     for (std::size_t i = 0; i < to.size(); ++i) to[i] += static_cast<Scalar>(kStep) * velocity[i];
     std::vector<Wrench> impulses(2);
-    const GuardReport report = guard.stop(from, to, velocity, motion, 1.0, workers, impulses);
+    const GuardReport report = guard.stop(from, to, velocity, motion, 1.0, workers, nullptr, impulses);
     CHECK(report.stopped == 50);
     CHECK(report.leaked == 0);
     for (const Vec4& p : to) CHECK(p[2] > 0);
+}
+
+TEST_CASE("a body that is lighter than what strikes it takes up no energy from nothing", "[walls][property]")
+{ // 20 particles on one face, of 1e-3 to 1e3 times the body's mass all together
+    const double ratio = GENERATE(1e-3, 0.1, 1.0, 10.0, 1e3);
+    CAPTURE(ratio);
+    Dice dice(5);
+    const TriangleMesh cube = tessellate(BoxShape{Vec3d::Constant(0.4)}, 1.0);
+    const SurfaceQuery query(cube);
+    const Workers workers(1);
+    WallGuard guard;
+    guard.build({{&query, false, true}}, kSpacing, workers);
+    constexpr double kMass = 0.064, kStep = 0.002;
+    const double body_mass = 20.0 * kMass / ratio, inertia = body_mass * 0.16 / 6.0;
+    const Twist drift{Vec3d(0.3, 0, 0.1), Vec3d(0, 0.5, 0)};
+    std::vector<GuardedMotion> motion(1);
+    motion[0].twist = drift;
+    motion[0].after.position = kStep * drift.linear;
+    motion[0].after.orientation = Quatd(Eigen::AngleAxisd(kStep * drift.angular.y(), Vec3d::UnitY()));
+    std::vector<Vec4> from, velocity(20, Vec4(0.2f, 0, -4, 0));
+    while (from.size() < velocity.size()) {
+        const Vec3d at = dice.in({Vec3d(-0.15, -0.15, 0.201), Vec3d(0.15, 0.15, 0.204)});
+        from.emplace_back(static_cast<Scalar>(at.x()), static_cast<Scalar>(at.y()), static_cast<Scalar>(at.z()), 0.0f);
+    }
+    std::vector<Vec4> to = from;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += static_cast<Scalar>(kStep) * velocity[i];
+    const auto sum = [&](auto&& term) {
+        Vec3d total = Vec3d::Zero();
+        for (std::size_t i = 0; i < to.size(); ++i)
+            total += kMass * term(Vec3d(to[i].head<3>().cast<double>()), Vec3d(velocity[i].head<3>().cast<double>()));
+        return total;
+    };
+    const auto linear = [&] { return sum([](const Vec3d&, const Vec3d& v) { return v; }); };
+    const auto angular = [&] { return sum([](const Vec3d& at, const Vec3d& v) { return Vec3d(at.cross(v)); }); };
+    const auto energy = [&](const Twist& twist) {
+        const Vec3d particles = sum([](const Vec3d&, const Vec3d& v) { return Vec3d(0.5 * v.squaredNorm(), 0, 0); });
+        return particles.x() + 0.5 * body_mass * twist.linear.squaredNorm() +
+               0.5 * inertia * twist.angular.squaredNorm();
+    };
+    const Vec3d linear_before = linear(), angular_before = angular();
+    const double energy_before = energy(drift);
+    const auto answer = [&](std::span<const Wrench> impulses, std::span<Twist> changes) {
+        changes[0] = {impulses[0].linear / body_mass, impulses[0].angular / inertia};
+    };
+    const WallGuard::Response response = answer;
+    std::vector<Wrench> impulses(1);
+    const GuardReport report = guard.stop(from, to, velocity, motion, kMass, workers, &response, impulses);
+    CHECK(report.stopped == 20);
+    const Twist after{drift.linear + impulses[0].linear / body_mass, drift.angular + impulses[0].angular / inertia};
+    const double scale = 20.0 * kMass * 4.0;
+    CHECK((linear_before - linear() - impulses[0].linear).norm() < 1e-5 * scale);
+    CHECK((angular_before - angular() - impulses[0].angular).norm() < 1e-5 * scale);
+    CHECK(energy(after) < 1.01 * energy_before); // a little: it gets the angular momentum that putting them back takes
+    CHECK(after.linear.norm() < 4.2);            // of the particles
+    CHECK(impulses[0].linear.z() < 0.0);
 }

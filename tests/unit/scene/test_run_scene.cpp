@@ -331,6 +331,19 @@ TEST_CASE("a vessel of sheet metal starts at rest afloat and dry", "[scene][run]
     CHECK(noted("bodies[0] (\"tub\") starts dry: "));
 }
 
+TEST_CASE("a light body that deep water presses to a wall is not thrown off it", "[scene][run]")
+{
+    // Of a twentieth of a particle's mass for each spacing of its width, 0.3 spacings from the wall.
+    const std::string text = R"({"flotsam": 1, "dimensions": 2, "particle_spacing": 0.01, "duration": 0.1,
+        "fluids": [{"name": "water", "blocks": [{"min": [0, 0], "max": [0.3, 0.4]}]}],
+        "walls": [{"box": {"min": [0, 0], "max": [0.3, 0.6], "open": ["+z"]}}],
+        "bodies": [{"name": "square", "shape": {"box": [0.1, 0.1]}, "density": 5, "position": [0.247, 0.2]}]})";
+    const RunReport report = ran(text, {});
+    CHECK(report.bodies.at(0).velocity.norm() < 1.5);
+    CHECK(report.bodies.at(0).position.x() < 0.26);
+    CHECK(report.bodies.at(0).position.x() > 0.2);
+}
+
 TEST_CASE("a vessel starts at rest with the water that is poured into her", "[scene][run]")
 {
     const TemporaryDirectory directory("flotsam_test_vessel_cargo");
