@@ -155,6 +155,7 @@ struct FluidWorld::Impl {
     PressureSystem::Scratch pressure_scratch; ///< the forces' before; change: by pressure [m/s]
     std::vector<Scalar> multiplier, source;   ///< source: scratch of sorting before
     std::vector<Scalar> fluid_diagonal, coupled_diagonal;
+    std::vector<char> is_pinched; ///< of each particle: between solids that all but touch
     std::vector<Eigen::Matrix<double, 6, 6>> mobility;
     std::vector<double> sums;
     std::vector<MaxOf> max_scratch;
@@ -273,7 +274,7 @@ struct FluidWorld::Impl {
     void predict_twists(Bodies& port);
     void build_mobility(Bodies& port);
     void find_mobility(Bodies& port);
-    void free_pinched();
+    void find_pinched();
     void solve_velocities(const PressureSystem& system, double dt, bool split, Bodies& port, StepReport& report);
     [[nodiscard]] bool revise(Bodies& port);
     [[nodiscard]] bool is_strong() const

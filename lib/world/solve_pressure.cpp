@@ -160,7 +160,9 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
     constexpr int kMostRounds = 6; // of the solve, until joints and contacts hold and yield as it has them
     const std::size_t n = fluid.size();
     const PressureSystem system = pressure_system();
-    free_pinched();
+    workers.for_each(n, [&](std::size_t i) {
+        if (is_pinched[i] != 0) fluid_diagonal[i] = 0; // carries no pressure
+    });
     const bool split = shift_if_possible(system, report);
     // The split leaves no density error in the pressure, so all of the last one is a good start; with the published
     // source a full start integrates the error and rings.
@@ -188,10 +190,10 @@ void FluidWorld::Impl::solve_pressure(double dt, Bodies& port, StepReport& repor
 
 /// Solids that all but touch fill nearly all that a particle between them sees, and no pressure takes it out of there:
 /// some such particles under a heavy raft on the floor would carry all of it, like grains of sand, at sixty times its
-/// mean pressure, and the step would shrink to an eighth. A diagonal of 0 leaves them without pressure and shift, and
-/// the solids meet. The shares are those between two planes a quarter of a spacing apart. A particle in the corner of
-/// three walls sees as much, but all on one side: pressure takes it out.
-void FluidWorld::Impl::free_pinched()
+/// mean pressure, and the step would shrink to an eighth. They are left without pressure and shift, and the solids
+/// meet, with a film between them. The shares are those between two planes a quarter of a spacing apart. A particle in
+/// the corner of three walls sees as much, but all on one side: pressure takes it out.
+void FluidWorld::Impl::find_pinched()
 {
     const Scalar most = settings.dimensions == 2 ? Scalar(0.9) : Scalar(0.75); // of the rest density, from solids
     const Scalar one_sided = static_cast<Scalar>(0.15 / spacing()); // at a plane 0.55, in corners 0.24 to 0.4 [1/m]
@@ -203,8 +205,9 @@ void FluidWorld::Impl::free_pinched()
         }
         return sum.norm();
     };
+    is_pinched.resize(fluid.size());
     workers.for_each(fluid.size(), [&](std::size_t i) {
-        if (boundary_pairs.kernel_sum[i] > most && gradient(i) < one_sided) fluid_diagonal[i] = 0;
+        is_pinched[i] = boundary_pairs.kernel_sum[i] > most && gradient(i) < one_sided ? 1 : 0;
     });
 }
 

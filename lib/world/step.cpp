@@ -201,6 +201,7 @@ void FluidWorld::Impl::measure_density(StepReport& report)
     compute_density(fluid_pairs.kernel_sum, boundary_pairs.kernel_sum, kernel.value(0), fluid.particle_mass,
                     settings.rest_density, workers, fluid.density);
     contact_builder.build(boundary_pairs, fluid.position, boundary, centers, settings.rest_density, workers, contacts);
+    find_pinched();
     const double rho0 = settings.rest_density;
     const auto compression = [&](std::size_t i) {
         return std::max(0.0, static_cast<double>(fluid.density[i]) / rho0 - 1.0);
@@ -267,7 +268,8 @@ void FluidWorld::Impl::fill_films(double dt, Bodies& port)
     }
     const WaterFilmSettings film{spacing(), settings.gravity, settings.rest_density, settings.dimensions,
                                  kDelay * settings.max_time_step};
-    films.fill(film, dt, {fluid, fluid_pairs, boundary_pairs, contacts, boundary.owner}, film_solids, guard);
+    films.fill(film, dt, {fluid, fluid_pairs, boundary_pairs, contacts, boundary.owner, is_pinched}, film_solids,
+               guard);
     filmed.assign(owners(), Wrench{});
     if (films.empty()) return;
     films.add_impulses(dt, filmed);

@@ -112,7 +112,7 @@ void WaterFilms::find_touches(const FilmWater& water, std::span<const FilmSolid>
         if (!solids[a].responds || solids[a].query == nullptr) continue;
         for (std::uint32_t k = contacts.start[a]; k < contacts.start[a + 1]; ++k) {
             const std::uint32_t i = contacts.particle[k];
-            if (owners_at_[i] < 2) continue;
+            if (owners_at_[i] < 2 || water.is_pinched[i] != 0) continue;
             const std::size_t first = touches_.size();
             for (std::uint32_t p = pairs.start[i]; p < pairs.start[i + 1]; ++p) {
                 const auto b = static_cast<std::uint32_t>(water.sample_owner[pairs.index[p]]);

@@ -40,6 +40,7 @@ struct FilmWater {
     const Pairs& boundary_pairs;
     const Contacts& contacts;
     std::span<const std::int32_t> sample_owner;
+    std::span<const char> is_pinched; ///< of each particle: it has no pressure, and takes no film's place
 };
 
 /// The water between solids that are closer to each other than a particle is wide: no particle gets in, but real water
