@@ -14,6 +14,9 @@ using Eigen::Vector2d;
 constexpr int kMostSteps = 300;
 constexpr double kLongestStep = 0.2; ///< [rad]
 constexpr double kRounding = 1e-14;  ///< of an energy, over size
+constexpr int kNeutralStrides = 10;
+constexpr double kStride = kNeutralTurn / kNeutralStrides; ///< along a valley [rad]
+constexpr double kValley = 10.0;                           ///< a valley is so many times as stiff across as along
 
 /// Newton's step with the curvature's eigenvalues made positive: downhill whatever they are.
 Vector2d newton_step(const FlotationSolver& solver, const Attitude& attitude)
@@ -56,15 +59,42 @@ std::optional<Attitude> lower_beside(const FlotationSolver& solver, const Attitu
     return std::nullopt;
 }
 
-/// The energy on the floor of a valley that leads about `axis` (of length one), to second order: a family of poses that
-/// goes around a body lies on no great circle.
-double valley_energy(const Attitude& attitude, const Vector2d& axis)
+/// A quarter turn from `axis`, about the vertical.
+Vector2d across(const Vector2d& axis)
 {
-    const Vector2d across(-axis.y(), axis.x());
-    const double stiffness = across.dot(attitude.curvature * across);
-    const bool is_valley = stiffness > 10.0 * std::abs(axis.dot(attitude.curvature * axis));
-    const double slope = attitude.slope.dot(across);
-    return is_valley ? attitude.energy - 0.5 * slope * slope / stiffness : attitude.energy;
+    return {-axis.y(), axis.x()};
+}
+
+/// The lowest place on the way across the valley that leads about `axis` (of length one), and how far that is [rad].
+struct Floor {
+    Attitude attitude;
+    double across = 0.0;
+};
+
+Floor floor_below(const FlotationSolver& solver, const Attitude& start, const Vector2d& axis)
+{
+    const Vector2d aside = across(axis);
+    Floor floor{start};
+    for (int step = 0; step < 8; ++step) {
+        const double slope = floor.attitude.slope.dot(aside);
+        const double stiffness = std::max(std::abs(aside.dot(floor.attitude.curvature * aside)), 1e-9 * solver.size());
+        if (0.5 * slope * slope / stiffness < 0.01 * kNeutralRise * solver.size()) break; // it would win no more
+        const double way = std::clamp(-slope / stiffness, -kStride, kStride);
+        Attitude next = turned(solver, floor.attitude, way * aside);
+        if (next.energy >= floor.attitude.energy) break;
+        floor = {std::move(next), floor.across + way};
+    }
+    return floor;
+}
+
+/// Whether a straight turn by kNeutralTurn about `axis` stays below kNeutralRise.
+bool is_level_turn(const FlotationSolver& solver, const Attitude& minimum, const Vector2d& axis)
+{
+    for (int k = 1; k <= kNeutralStrides; ++k) {
+        const double energy = turned(solver, minimum, k * kStride * axis).energy;
+        if (!(energy < minimum.energy + kNeutralRise * solver.size())) return false;
+    }
+    return true;
 }
 
 } // namespace
@@ -73,6 +103,12 @@ Attitude turned(const FlotationSolver& solver, const Attitude& attitude, const V
 {
     const Twist twist{Vec3d::Zero(), Vec3d(turn.x(), turn.y(), 0.0)};
     return solver.at(moved({Vec3d::Zero(), attitude.orientation}, twist, 1.0).orientation, attitude.level);
+}
+
+double angle_between(const Attitude& a, const Attitude& b)
+{
+    const Vec3d u = a.up_body(), v = b.up_body();
+    return std::atan2(u.cross(v).norm(), u.dot(v));
 }
 
 double residual(const FlotationSolver& solver, const Attitude& attitude)
@@ -92,32 +128,51 @@ Attitude descended(const FlotationSolver& solver, Attitude attitude)
     return attitude;
 }
 
-int neutral_directions(const FlotationSolver& solver, const Attitude& minimum)
+std::vector<Attitude> level_valley(const FlotationSolver& solver, const Attitude& minimum, Vector2d axis, int strides)
 {
-    int flat = 0;
-    for (const Vector2d& axis : principal_axes(minimum.curvature).axes) {
-        const double one_way = valley_energy(turned(solver, minimum, kNeutralTurn * axis), axis);
-        const double other_way = valley_energy(turned(solver, minimum, -kNeutralTurn * axis), axis);
-        const double highest = std::max(one_way, other_way);
-        if (highest - minimum.energy < kNeutralRise * solver.size()) ++flat;
+    std::vector<Attitude> places;
+    Attitude attitude = minimum;
+    for (int k = 1; k <= strides; ++k) {
+        const Floor floor = floor_below(solver, turned(solver, attitude, kStride * axis), axis);
+        if (!(std::abs(floor.attitude.energy - minimum.energy) < kNeutralRise * solver.size())) break;
+        attitude = floor.attitude;
+        axis = (kStride * axis + floor.across * across(axis)).normalized();
+        places.push_back(attitude);
+        if (k > kNeutralStrides && angle_between(attitude, minimum) < kStride) break;
     }
-    return flat;
+    return places;
 }
 
-bool is_level_between(const FlotationSolver& solver, const Attitude& from, const Attitude& to)
+int neutral_directions(const FlotationSolver& solver, const Attitude& minimum)
 {
-    constexpr double kStride = 0.035; // 2 degrees
-    const double bound = std::max(from.energy, to.energy) + kNeutralRise * solver.size();
+    const auto [stiffness, axes] = principal_axes(minimum.curvature);
+    const auto is_level = [&](const Vector2d& axis) { return is_level_turn(solver, minimum, axis); };
+    const auto has_valley = [&](const Vector2d& axis) {
+        return level_valley(solver, minimum, axis, kNeutralStrides).size() == kNeutralStrides;
+    };
+    int flat = 0;
+    for (const Vector2d& axis : axes) flat += is_level(axis) && is_level(-axis) ? 1 : 0;
+    if (flat > 0 || stiffness[1] < kValley * std::abs(stiffness[0])) return flat;
+    return has_valley(axes[0]) && has_valley(-axes[0]) ? 1 : 0;
+}
+
+bool is_level_between(const FlotationSolver& solver, const Attitude& from, const Attitude& to, double low, double high)
+{
     // The turn that makes `to`'s up vertical, in the world of `from`; about x where that is the one below.
     const Vec3d up = from.orientation * to.up_body();
     const Vector2d axis(up.y(), -up.x());
     const double sine = axis.norm(), angle = std::atan2(sine, up.z());
-    const int strides = static_cast<int>(std::ceil(angle / kStride));
+    const int strides = std::max(2, static_cast<int>(std::ceil(angle / (2.0 * kStride))));
     const Vector2d way = sine > 0.0 ? Vector2d(axis / sine) : Vector2d::UnitX();
     Attitude attitude = from;
-    for (int k = 1; k < strides; ++k) {
+    double beside = 0.0;
+    for (int k = 1; k <= strides; ++k) {
         attitude = turned(solver, attitude, angle / strides * way);
-        if (valley_energy(attitude, way) > bound) return false;
+        const Floor floor = k < strides ? floor_below(solver, attitude, way) : Floor{attitude};
+        const bool leaps = std::abs(floor.across - beside) > 4.0 * kStride; // over a ridge, perhaps
+        const double energy = floor.attitude.energy;
+        if (!(energy >= low && energy <= high) || leaps) return false;
+        beside = floor.across;
     }
     return true;
 }

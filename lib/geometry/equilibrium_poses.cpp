@@ -1,6 +1,7 @@
 #include "flotsam/geometry/equilibrium_poses.hpp"
 
 #include "geometry/attitude_descent.hpp"
+#include "geometry/pose_families.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,12 +15,6 @@ namespace {
 
 constexpr int kStarts = 162;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-/// A pose at rest and how many directions are flat there.
-struct Minimum {
-    Attitude attitude;
-    int neutral_directions = 0;
-};
 
 /// The k-th of `count` directions that are spread evenly and lie on no axis.
 Vec3d start_direction(int k, int count)
@@ -48,12 +43,6 @@ Quatd upright_orientation(const Vec3d& up_body)
     return Quatd(Eigen::AngleAxisd(trim, Vec3d::UnitY()) * Eigen::AngleAxisd(heel, Vec3d::UnitX()));
 }
 
-double angle_between(const Attitude& a, const Attitude& b)
-{
-    const Vec3d u = a.up_body(), v = b.up_body();
-    return std::atan2(u.cross(v).norm(), u.dot(v));
-}
-
 EquilibriumPose pose_of(const FlotationSolver& solver, const Minimum& minimum)
 {
     const Attitude& attitude = minimum.attitude;
@@ -70,56 +59,15 @@ EquilibriumPose pose_of(const FlotationSolver& solver, const Minimum& minimum)
 }
 
 /// What the starts come to, each place once, the lowest first.
-std::vector<Minimum> distinct(const FlotationSolver& solver, std::vector<Attitude> ends)
+std::vector<Minimum> distinct(std::vector<Attitude> ends)
 {
     std::stable_sort(ends.begin(), ends.end(),
                      [](const Attitude& a, const Attitude& b) { return a.energy < b.energy; });
     std::vector<Minimum> kept;
     for (const Attitude& end : ends) {
         const auto is_same = [&](const Minimum& other) { return angle_between(other.attitude, end) < kSameAngle; };
-        if (std::none_of(kept.begin(), kept.end(), is_same)) kept.push_back({end, neutral_directions(solver, end)});
+        if (std::none_of(kept.begin(), kept.end(), is_same)) kept.push_back({end});
     }
-    return kept;
-}
-
-/// Two neutral minima and the angle between them [rad].
-struct Link {
-    double angle;
-    std::size_t a, b;
-};
-
-/// Pairs that may belong to one family: of one energy up to facets, and not so far apart that nearer members would be
-/// missing between them.
-std::vector<Link> links_between_neutral(const FlotationSolver& solver, const std::vector<Minimum>& minima)
-{
-    constexpr double kLongest = 1.2; // [rad]: a coarse ball has few minima
-    std::vector<Link> links;
-    for (std::size_t b = 0; b < minima.size(); ++b)
-        for (std::size_t a = 0; a < b; ++a) {
-            const Attitude &low = minima[a].attitude, &high = minima[b].attitude;
-            const bool are_neutral = minima[a].neutral_directions > 0 && minima[b].neutral_directions > 0;
-            if (!are_neutral || high.energy - low.energy > kNeutralRise * solver.size()) continue;
-            const double angle = angle_between(low, high);
-            if (angle < kLongest) links.push_back({angle, a, b});
-        }
-    std::stable_sort(links.begin(), links.end(), [](const Link& p, const Link& q) { return p.angle < q.angle; });
-    return links;
-}
-
-/// The lowest of each family of neutral minima, and all others; `minima` come the lowest first. Shortest links are
-/// tried first, so that a family that does not lie on a great circle is joined step by step.
-std::vector<Minimum> representatives(const FlotationSolver& solver, const std::vector<Minimum>& minima)
-{
-    std::vector<std::size_t> family(minima.size());
-    for (std::size_t k = 0; k < family.size(); ++k) family[k] = k;
-    for (const auto& [angle, a, b] : links_between_neutral(solver, minima)) {
-        const std::size_t low = std::min(family[a], family[b]), high = std::max(family[a], family[b]);
-        if (low != high && is_level_between(solver, minima[a].attitude, minima[b].attitude))
-            std::replace(family.begin(), family.end(), high, low);
-    }
-    std::vector<Minimum> kept;
-    for (std::size_t k = 0; k < minima.size(); ++k)
-        if (family[k] == k) kept.push_back(minima[k]);
     return kept;
 }
 
@@ -170,7 +118,7 @@ std::optional<EquilibriumPoses> stable_poses(const FloatingBody& body)
             ++found.unconverged_starts;
     }
     if (ends.empty()) throw NoEquilibrium(smallest);
-    for (const Minimum& minimum : representatives(solver, distinct(solver, std::move(ends))))
+    for (const Minimum& minimum : lowest_of_families(solver, distinct(std::move(ends))))
         found.poses.push_back(pose_of(solver, minimum));
     order_equals(found.poses, 1e-9 * solver.weight() * solver.size());
     return found;
