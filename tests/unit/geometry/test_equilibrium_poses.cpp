@@ -4,6 +4,7 @@
 #include "support/catch.hpp"
 #include "unit/geometry/sample_meshes.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 using namespace flotsam;
@@ -41,6 +42,33 @@ double log_tilt_deg(double s)
     if (s <= 0.25) return std::atan(std::sqrt(std::max(0.0, 12 * s * (1 - s) - 2))) / kDegree;
     const double root = std::sqrt(std::max(0.0, 9.0 / 16 - 2 * s));
     return std::atan((0.75 - root) / (0.75 + root)) / kDegree;
+}
+
+/// Closed prism along y over a regular polygon, stretched along x; of many corners, a cylinder.
+TriangleMesh regular_prism(int corners, double radius, double length, double stretch = 1.0)
+{
+    std::vector<Eigen::Vector2d> outline;
+    for (int k = 0; k < corners; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / corners;
+        outline.emplace_back(stretch * radius * std::cos(angle), radius * std::sin(angle));
+    }
+    return test_meshes::prism(outline, 0.5 * length);
+}
+
+/// Tilt [deg] of the axis of a prism over a regular polygon whose ends the waterline does not cut: with the second
+/// moment of the polygon's area R^2 (2 + cos(2 pi / n)) / 12 of that area, BM = that / (s L), BG = (1 - s) L / 2 and
+/// the righting arm of wall sides (BM (1 + t^2 / 2) - BG) sin, t = tan(tilt), is nothing.
+double prism_tilt_deg(int corners, double radius, double length, double s)
+{
+    const double moment = radius * radius * (2.0 + std::cos(2.0 * std::numbers::pi / corners)) / 12.0;
+    const double bm = moment / (s * length), bg = 0.5 * (1.0 - s) * length;
+    return std::atan(std::sqrt(2.0 * (bg / bm - 1.0))) / kDegree;
+}
+
+/// How far the body's `axis` leans from upright [deg], 0 to 180.
+double lean_deg(const EquilibriumPose& pose, const Vec3d& axis)
+{
+    return std::acos((pose.flotation.pose.orientation * axis).z() / axis.norm()) / kDegree;
 }
 
 /// The angle to the nearest upright attitude of a square section [deg].
@@ -131,6 +159,90 @@ TEST_CASE("a drum tilts in a ring of poses", "[geometry][equilibrium]")
         CHECK(std::abs(up.z()) < 0.95);
     }
     CHECK(drum.poses.size() == 2); // one ring either way up
+}
+
+TEST_CASE("a cylinder that floats inclined has one family of poses for each end", "[geometry][equilibrium]")
+{
+    const int corners = GENERATE(12, 24, 48, 96);
+    const bool is_turned = GENERATE(false, true);
+    INFO(corners << " corners" << (is_turned ? ", turned" : ""));
+    const Quatd turn = is_turned ? Quatd(0.8, 0.3, -0.2, 0.5).normalized() : Quatd::Identity();
+    TriangleMesh mesh = regular_prism(corners, 0.2, 0.3);
+    for (Vec3d& v : mesh.vertices) v = turn * v;
+    const FloatingBody body = uniform(mesh, 0.5);
+    const Vec3d axis = turn * Vec3d::UnitY();
+    const double tilt = prism_tilt_deg(corners, 0.2, 0.3, 0.5);
+
+    const EquilibriumPoses found = poses_of(body);
+    REQUIRE(found.poses.size() == 2);
+    for (const EquilibriumPose& pose : found.poses) {
+        CHECK(pose.neutral_directions == 1);
+        const double lean = lean_deg(pose, axis);
+        CHECK(std::min(lean, 180.0 - lean) == Approx(tilt).margin(0.01));
+    }
+    CHECK(lean_deg(found.poses[0], axis) + lean_deg(found.poses[1], axis) == Approx(180.0).margin(0.02));
+
+    const auto settled = settled_pose(body, Quatd(0.7, 0.1, 0.4, -0.2));
+    REQUIRE(settled.has_value());
+    CHECK(settled->neutral_directions == 1);
+}
+
+TEST_CASE("each way in which a cone floats is one family of poses", "[geometry][equilibrium]")
+{
+    const int corners = GENERATE(24, 96);
+    const double ratio = GENERATE(0.5, 0.512); // tip down it leans by 14 to 16 and by 2 to 8 degrees
+    const bool is_turned = GENERATE(false, true);
+    INFO(corners << " corners, density ratio " << ratio << (is_turned ? ", turned" : ""));
+    const Quatd turn = is_turned ? Quatd(0.8, 0.3, -0.2, 0.5).normalized() : Quatd::Identity();
+    TriangleMesh mesh = test_meshes::cone(0.2, 0.4, corners);
+    for (Vec3d& v : mesh.vertices) v = turn * v;
+    const EquilibriumPoses found = poses_of(uniform(mesh, ratio));
+    REQUIRE(found.poses.size() == 3); // tip down, tip up, on its side
+    std::vector<double> leans;
+    for (const EquilibriumPose& pose : found.poses) {
+        CHECK(pose.neutral_directions == 1);
+        leans.push_back(lean_deg(pose, turn * Vec3d::UnitZ()));
+    }
+    std::ranges::sort(leans);
+    CHECK(leans[0] < 20.0);
+    CHECK(leans[1] == Approx(90.0).margin(20.0));
+    CHECK(leans[2] > 150.0);
+}
+
+TEST_CASE("a prism that is nearly round has as many families as its ridges part", "[geometry][equilibrium]")
+{
+    // Along the ring of an elliptic cylinder E goes up and down twice: by 4e-6 m g V^(1/3) for a stretch of 1e-4, which
+    // does not count, by 4e-5 for 1e-3.
+    const auto [stretch, families, neutral] =
+        GENERATE(table<double, std::size_t, int>({{1.0001, 2, 1}, {1.001, 4, 1}, {1.01, 4, 0}}));
+    const EquilibriumPoses found = poses_of(uniform(regular_prism(64, 0.2, 0.3, stretch), 0.5));
+    CHECK(found.poses.size() == families);
+    for (const EquilibriumPose& pose : found.poses) CHECK(pose.neutral_directions == neutral);
+}
+
+TEST_CASE("a cube that leans in a ring about each face has one pose for it", "[geometry][equilibrium]")
+{
+    // While the waterline cuts four faces only, E depends on tan(tilt), whatever the direction. The others: corner up.
+    const EquilibriumPoses found = poses_of(uniform(tessellate(BoxShape{}, 1.0), GENERATE(0.212, 0.22, 0.78)));
+    CHECK(found.poses.size() == 8 + 6);
+    CHECK(std::ranges::count(found.poses, 1, &EquilibriumPose::neutral_directions) == 6);
+    CHECK(std::ranges::count(found.poses, 0, &EquilibriumPose::neutral_directions) == 8);
+}
+
+TEST_CASE("prisms of few sides keep their poses apart", "[geometry][equilibrium]")
+{
+    struct Case {
+        int sides;
+        double length, ratio;
+        std::size_t poses;
+    };
+    const Case c =
+        GENERATE(Case{4, 1.0, 0.35, 4}, Case{6, 1.0, 0.2, 6}, Case{6, 1.0, 0.35, 12}, Case{6, 0.3, 0.35, 12},
+                 Case{6, 1.0, 0.5, 6}, Case{8, 1.0, 0.35, 8}, Case{12, 1.0, 0.35, 12}, Case{12, 0.4, 0.5, 12});
+    INFO(c.sides << " sides, length " << c.length << ", density ratio " << c.ratio);
+    const EquilibriumPoses found = poses_of(uniform(regular_prism(c.sides, 0.2, c.length), c.ratio));
+    CHECK(found.poses.size() == c.poses);
+    for (const EquilibriumPose& pose : found.poses) CHECK(pose.neutral_directions == 0);
 }
 
 TEST_CASE("heel, trim and rotation vector name the same orientation", "[geometry][equilibrium]")
