@@ -208,6 +208,7 @@ struct FluidWorld::Impl {
 
     // prepare.cpp
     void prepare(Bodies& port, const std::function<void(const SettleProgress&)>& on_round = {});
+    [[nodiscard]] double mean_winding(const Wall& wall) const;
     void choose_wall_sides();
     void place_water();
     [[nodiscard]] std::vector<Vessel> find_vessels() const;

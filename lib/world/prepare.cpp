@@ -114,26 +114,52 @@ void FluidWorld::Impl::place_water()
     for (std::size_t k = 0; k < bodies.size(); ++k) bodies[k].last_pose = states[k].pose;
 }
 
+/// How often a wall winds around the water that is given, in the mean: 1 where it holds all of it, -1 where it does and
+/// faces the wrong way.
+double FluidWorld::Impl::mean_winding(const Wall& wall) const
+{
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const FluidSeed& seed : seeds) {
+        const std::size_t stride = 1 + seed.positions.size() / 2000;
+        for (std::size_t k = 0; k < seed.positions.size(); k += stride, ++count)
+            sum += wall.query->winding_number(seed.positions[k]);
+    }
+    return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+/// A wall that has most of the water inside is a container. Where none has, and no other wall holds water, the closed
+/// one is that has the largest part of it inside, if that is as much as a quarter: the water is cut by its container,
+/// not by some ground that it lies on.
 void FluidWorld::Impl::choose_wall_sides()
 {
-    for (Wall& wall : walls) {
+    constexpr double kLeast = 0.25;
+    const auto turn = [](Wall& wall) {
+        wall.mesh = flipped(std::move(wall.mesh));
         wall.query = std::make_unique<SurfaceQuery>(wall.mesh);
-        if (wall.side != WallSide::automatic) continue;
-        double sum = 0.0;
-        std::size_t count = 0;
-        for (const FluidSeed& seed : seeds) {
-            const std::size_t stride = 1 + seed.positions.size() / 2000;
-            for (std::size_t k = 0; k < seed.positions.size(); k += stride, ++count) {
-                sum += wall.query->winding_number(seed.positions[k]);
-            }
+    };
+    std::vector<double> inside(walls.size(), 0.0); // of the water, of those that may be containers after all
+    bool is_held = false;
+    for (std::size_t k = 0; k < walls.size(); ++k) {
+        Wall& wall = walls[k];
+        wall.query = std::make_unique<SurfaceQuery>(wall.mesh);
+        if (wall.side == WallSide::automatic) {
+            const double mean = mean_winding(wall);
+            if (mean < -0.5) turn(wall);
+            const bool container = std::abs(mean) > 0.5;
+            wall.side = container ? WallSide::inside : is_closed(wall.mesh) ? WallSide::outside : WallSide::both;
+            inside[k] = wall.side == WallSide::outside ? mean : 0.0;
         }
-        const double mean = count > 0 ? sum / static_cast<double>(count) : 0.0;
-        if (mean < -0.5) {
-            wall.mesh = flipped(std::move(wall.mesh));
-            wall.query = std::make_unique<SurfaceQuery>(wall.mesh);
-        }
-        const bool container = std::abs(mean) > 0.5;
-        wall.side = container ? WallSide::inside : is_closed(wall.mesh) ? WallSide::outside : WallSide::both;
+        is_held = is_held || wall.side != WallSide::outside;
+    }
+    const auto largest =
+        std::max_element(inside.begin(), inside.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    if (!is_held && largest != inside.end() && std::abs(*largest) > kLeast) {
+        Wall& wall = walls[static_cast<std::size_t>(largest - inside.begin())];
+        if (*largest < 0.0) turn(wall);
+        wall.side = WallSide::inside;
+        notes.push_back(wall.name + " is taken for the container of the water, of which a part is inside; its side can "
+                                    "be given");
     }
     for (BodySurface& body : bodies)
         if (!body.mesh.empty()) body.query = std::make_unique<SurfaceQuery>(body.mesh);

@@ -14,7 +14,9 @@ namespace flotsam {
 // Frames for ParaView: VTK XML PolyData (.vtp) with raw appended data, and the .pvd that strings them along time.
 // **Source:** Kitware, VTK File Formats, "XML file formats". All lengths in metres, world frame. All throw OutputError.
 
-/// Particles as vertices in memory order, with velocity [m/s], speed [m/s], density [kg/m^3], pressure [Pa] and id.
+/// Particles as vertices in memory order, with velocity [m/s], speed [m/s], density [kg/m^3], pressure [Pa] and id. The
+/// pressure is the solver's: half as much again in the layer at a solid, which bears all of its force
+/// (FluidWorld::pressure_at is without that).
 void write_particles_vtp(const std::filesystem::path& file, const FluidState& fluid);
 
 /// All bodies in one file; cell data `body` is the index into `bodies`.

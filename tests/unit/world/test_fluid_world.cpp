@@ -450,6 +450,22 @@ TEST_CASE("the side of a wall is found from the fluid", "[world]")
         CHECK(volume(fluid.wall_mesh(wall)) == Approx(room.size().prod()));
         CHECK(fluid.fluid().size() == all);
     }
+    SECTION("a container that has not half of the water inside cuts it, if nothing else holds water")
+    {
+        const int wall = fluid.add_wall(box_mesh({Vec3d(-0.1, 0, 0), Vec3d(0.24, 0.5, 0.4)}));
+        fluid.prepare(none);
+        CHECK(fluid.fluid().size() < all / 2);
+        CHECK(fluid.notes()[0].find("is taken for the container of the water") != std::string::npos);
+        for (int k = 0; k < 25; ++k) fluid.step(0.004, none);
+        CHECK(fluid.wall_force(wall).z() < 0.0);
+    }
+    SECTION("in a container it is an obstacle")
+    {
+        fluid.add_wall(box_mesh({Vec3d(-0.1, 0, 0), Vec3d(0.24, 0.5, 0.4)}));
+        fluid.add_box_wall({Vec3d(-0.1, 0, 0), Vec3d(0.6, 0.5, 0.4)}, {"+z"});
+        fluid.prepare(none);
+        CHECK(fluid.fluid().size() > all / 2);
+    }
     SECTION("an obstacle cuts the fluid")
     {
         fluid.add_box_wall(room);
