@@ -115,8 +115,9 @@ double FluidWorld::pressure_at(const Vec3d& point) const
 
 std::optional<double> FluidWorld::level_at(double x, double y) const
 {
-    // Profile of the volume fraction along the vertical line, on points a fifth of a spacing apart: each particle
-    // within reach adds its kernel to the points near it. The highest passage through 1/2 counts.
+    // Profile of the water's share of what solids leave of the volume, along the vertical line on points a fifth of a
+    // spacing apart: each particle within reach adds its kernel to the points near it. The highest passage through 1/2
+    // counts.
     const FluidState& fluid = impl_->fluid;
     const double d = impl_->spacing(), h = impl_->support(), dz = 0.2 * d;
     const double excess = d * surface_excess(impl_->settings.kernel, impl_->settings.dimensions);
@@ -129,6 +130,17 @@ std::optional<double> FluidWorld::level_at(double x, double y) const
     if (near.empty()) return std::nullopt;
     std::sort(near.begin(), near.end(), std::greater<>());
     const double volume = fluid.particle_mass / impl_->settings.rest_density;
+    const auto left_by_solids = [&](double z) {
+        constexpr double kLeast = 0.2; // in the corner of two walls a quarter is left
+        if (!impl_->has_pairs()) return 1.0;
+        const Vec3d point(x, impl_->settings.dimensions == 3 ? y : 0.0, z);
+        double solids = 0.0;
+        visit_around(impl_->grid, impl_->boundary_cells, point, 1, [&](std::uint32_t b) {
+            const double r = (impl_->boundary.position[b].head<3>().cast<double>() - point).norm();
+            solids += static_cast<double>(impl_->boundary.volume[b] * impl_->kernel.value(static_cast<Scalar>(r)));
+        });
+        return std::max(kLeast, 1.0 - solids);
+    };
     const auto fraction = [&](double z) {
         double sum = 0.0;
         for (const auto& [height, away_sq] : near) {
@@ -136,7 +148,7 @@ std::optional<double> FluidWorld::level_at(double x, double y) const
             const double r = std::sqrt(away_sq + (height - z) * (height - z));
             sum += volume * static_cast<double>(impl_->kernel.value(static_cast<Scalar>(r)));
         }
-        return sum;
+        return sum > 0.0 ? sum / left_by_solids(z) : 0.0;
     };
     double above = 0.0;
     const double lowest = near.back().first - h;

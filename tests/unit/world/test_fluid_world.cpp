@@ -321,6 +321,8 @@ TEST_CASE("a still tank has the pressure, level and weight of its water", "[worl
     // Half a spacing is the place of the surface's uppermost layer; pressures are of 12 and 7.5 layers below it.
     CHECK(level / seconds == Approx(kDepth).margin(0.5 * kSpacing));
     CHECK(line / seconds == Approx(kDepth).margin(0.5 * kSpacing));
+    for (const double x : {0.0, 0.25 * kSpacing, kSpacing, kWidth}) // at the walls it is no lower
+        CHECK(fluid.level_at(x, 0.0).value() == Approx(kDepth).margin(0.5 * kSpacing));
     CHECK(pressure / seconds == Approx(1000.0 * 9.81 * 0.8 * kDepth).epsilon(0.05));
     CHECK(middle / seconds == Approx(1000.0 * 9.81 * 0.5 * kDepth).epsilon(0.05));
     CHECK(fluid.pressure_at(Vec3d(0.5 * kWidth, 0, 0.5)) == 0.0); // above the water
