@@ -2,7 +2,7 @@
 
 #include "assimp_files.hpp"
 #include "flotsam/core/contracts.hpp"
-#include "mesh_file_structure.hpp"
+#include "mesh_files/mesh_files.hpp"
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 6> kFormats{".obj", ".stl", ".ply", ".dae
 [[noreturn]] void refuse(const path& file, std::string reason)
 {
     std::replace(reason.begin(), reason.end(), '\n', ' '); // a sentence is one line, whatever assimp says
+    if (reason.size() > 400) reason.replace(400, std::string::npos, "...");
     throw InputError("cannot read mesh \"" + file.string() + "\": " + reason);
 }
 
@@ -43,21 +44,26 @@ std::string content_of(const path& file)
     return content;
 }
 
-/// All that can be said before assimp sees the file.
+/// Before anything is read.
 void check_file(const path& file)
 {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) refuse(file, "there is no such file");
     if (!std::filesystem::is_regular_file(status)) refuse(file, "it is not a file");
-    const std::string extension = extension_of(file);
     if (!is_mesh_file_name(file)) refuse(file, "its name must end in .obj, .stl, .ply, .dae, .gltf or .glb");
+}
+
+/// What assimp is to read instead of the file, empty if that can stay.
+std::string plain_content(const path& file)
+{
     const std::string content = content_of(file);
     if (content.empty()) refuse(file, "it is empty");
-    std::string fault;
-    if (extension == ".ply") fault = fault_of_ply(content);
-    if (extension == ".stl") fault = fault_of_stl(content);
-    if (!fault.empty()) refuse(file, fault);
+    const std::string extension = extension_of(file);
+    if (extension == ".ply") return plain_ply(content);
+    if (extension == ".stl") return plain_stl(content);
+    if (extension == ".obj") return plain_obj(content);
+    return {};
 }
 
 /// Appends the triangles of the scene's nodes, each placed by the nodes above it.
@@ -119,7 +125,7 @@ class SceneReader {
 TriangleMesh read_with_assimp(const path& file)
 {
     Assimp::Importer importer;
-    importer.SetIOHandler(new AssimpFiles); // the importer's from here on
+    importer.SetIOHandler(new AssimpFiles(file.string(), plain_content(file))); // the importer's from here on
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true); // else nodes without geometry become bones
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);

@@ -19,7 +19,8 @@ struct MeshFileOptions {
 /// is: no unit or axis conversion beyond `options`. Polygons become triangles, points and lines are dropped, several
 /// parts stay several parts. Vertices are not welded and nothing is checked beyond what reading needs: see check_mesh.
 /// Coordinates have float's digits, as assimp keeps them.
-/// Throws InputError naming the file: missing, not readable, of an unknown format, truncated, without triangles.
+/// Throws InputError naming the file: missing, not readable, of an unknown format, truncated, with numbers or indices
+/// that are not what the format says, or without triangles.
 [[nodiscard]] TriangleMesh load_mesh(const std::filesystem::path& file, const MeshFileOptions& options = {});
 
 } // namespace flotsam

@@ -4,6 +4,7 @@
 #include "flotsam/geometry/mesh_check.hpp"
 #include "support/catch.hpp"
 
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -316,13 +317,18 @@ TEST_CASE("truncated files are refused, wherever they end", "[geometry][load_mes
         refusal(folder.write("cut.ply", ply_binary(false).substr(0, ply_header("binary_little_endian").size() + 60))),
         EndsWith("it is truncated, or not numbers, at face 0 of 4"));
     CHECK_THAT(refusal(folder.write("cut.obj", obj().substr(0, obj().size() - 5))),
-               EndsWith("face 3 of its part \"tet\" has 1 corners, at least 3 are needed"));
+               EndsWith("its face on line 10 has 1 corners, at least 3 are needed"));
 }
 
 TEST_CASE("indices of vertices that are not there are refused", "[geometry][load_mesh]")
 {
     const Folder folder;
-    CHECK_THAT(refusal(folder.write("tet.obj", obj() + "f 1 2 99\n")), Contains("vertex index out of range"));
+    CHECK_THAT(refusal(folder.write("tet.obj", obj() + "f 1 2 99\n")),
+               EndsWith("its face on line 11 names vertex 99, allowed are 1 to 4"));
+    CHECK_THAT(refusal(folder.write("back.obj", "v 0 0 0\nv 1 0 0\n\nf -1 -2 -3\nv 0 1 0\n")),
+               EndsWith("its face on line 4 names vertex -3, allowed are 1 to 3"));
+    CHECK_THAT(refusal(folder.write("normal.obj", obj() + "f 1//1 2//1 3//1\n")),
+               EndsWith("its face on line 11 names normal 1, allowed are none, for it has none"));
     CHECK_THAT(refusal(folder.write("tet.ply", ply_ascii(77))),
                EndsWith("face 3 of 4 names vertex 77, allowed are 0 to 3"));
     CHECK_THAT(refusal(folder.write("neg.ply", ply_ascii(-1))),
@@ -344,6 +350,67 @@ TEST_CASE("PLY headers that cannot be followed are refused", "[geometry][load_me
     CHECK_THAT(with("element vertex 4", "element vertex 99999999999"), Contains("it is truncated, or not numbers"));
     CHECK_THAT(with("format ascii 1.0\n", ""), EndsWith("its header names no format"));
     CHECK_THAT(with("3 0 2 1", "0 0 2 1"), Contains("face 0 of 4 cannot have a list of 0"));
+}
+
+TEST_CASE("binary PLY is read whatever its first byte of data is", "[geometry][load_mesh]")
+{
+    const Folder folder;
+    const int byte = GENERATE(0x00, 0x09, 0x0a, 0x0c, 0x0d, 0x20, 0x23);
+    const bool has_returns = GENERATE(false, true);
+    std::string file = ply_binary(false);
+    const std::size_t first = ply_header("binary_little_endian").size();
+    file[first] = static_cast<char>(byte); // of a float that stays next to nothing
+    if (has_returns)
+        for (std::size_t at = 0; at < first; ++at)
+            if (file[at] == '\n' && file[at - 1] != '\r') file.insert(at, "\r");
+    INFO("first byte " << byte << (has_returns ? " after \\r\\n" : " after \\n"));
+    check_is_tetrahedron(load_mesh(folder.write("tet.ply", file)));
+}
+
+TEST_CASE("ASCII PLY may break its lines anywhere", "[geometry][load_mesh]")
+{
+    const Folder folder;
+    std::string text = ply_ascii();
+    const std::size_t first = text.find("1.000000 ");
+    text[text.find(' ', first)] = '\n';
+    check_is_tetrahedron(load_mesh(folder.write("tet.ply", text)));
+    CHECK_THAT(refusal(folder.write("more.ply", ply_ascii() + "7\n")),
+               EndsWith("it has more numbers than its header announces"));
+}
+
+TEST_CASE("keywords of ASCII STL may be in upper case", "[geometry][load_mesh]")
+{
+    const Folder folder;
+    std::string text = stl_ascii();
+    for (char& c : text) c = static_cast<char>(std::toupper(c));
+    check_is_tetrahedron(load_mesh(folder.write("tet.stl", text)));
+}
+
+TEST_CASE("ASCII STL with a facet of other than three vertices is refused", "[geometry][load_mesh]")
+{
+    const Folder folder;
+    std::string text = stl_ascii();
+    text.insert(text.find("endloop"), "vertex 1 1 1\n");
+    CHECK_THAT(refusal(folder.write("four.stl", text)), EndsWith("it has \"vertex\" on line 7, allowed is endloop"));
+    text = stl_ascii();
+    text.replace(text.find("facet", 20), 5, "facat");
+    CHECK(refusal(folder.write("typo.stl", text)) != "(accepted)");
+}
+
+TEST_CASE("OBJ is read as its format says", "[geometry][load_mesh]")
+{
+    const Folder folder;
+    std::string text = obj();
+    text.replace(text.find("v 0.0"), 3, "  v "); // indented, and a number without its zero
+    text.replace(text.find("v 1.0"), 5, "v 1,0");
+    text.replace(text.find("f 1 3 2"), 7, "f -4 \\\n -2 -3 # around");
+    check_is_tetrahedron(load_mesh(folder.write("tet.obj", text)));
+    CHECK_THAT(refusal(folder.write("comma.obj", "v 0,5,1 0 0\n" + obj())),
+               EndsWith("its vertex on line 1 has \"0,5,1\", which is no number"));
+    CHECK_THAT(refusal(folder.write("flat.obj", "v 0 0\n" + obj())),
+               EndsWith("its vertex on line 1 has 2 numbers, allowed are x, y and z"));
+    CHECK_THAT(refusal(folder.write("word.obj", obj() + "f 1 2 x\n")),
+               EndsWith("its face on line 11 has the corner \"x\", which is not made of whole numbers"));
 }
 
 TEST_CASE("glTF with its buffer missing or too short is refused", "[geometry][load_mesh]")
