@@ -63,6 +63,7 @@ std::string plain_content(const path& file)
     if (extension == ".ply") return plain_ply(content);
     if (extension == ".stl") return plain_stl(content);
     if (extension == ".obj") return plain_obj(content);
+    if (extension == ".dae") return plain_dae(content);
     return {};
 }
 

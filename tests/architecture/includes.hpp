@@ -34,7 +34,7 @@ inline const std::vector<Module>& table()
     };
     static const std::vector<Module> modules = {
         {"core", 1, {}, {"TBB"}},
-        {"geometry", 2, {"core"}, {"assimp", "FCL"}},
+        {"geometry", 2, {"core"}, {"assimp", "FCL", "nlohmann-json", "pugixml"}},
         {"sph", 2, {"core"}, {"Highway"}},
         {"world", 3, {"core", "geometry", "sph"}, {}},
         {"surface", 3, {"core", "geometry", "sph"}, {}},
@@ -68,6 +68,7 @@ inline std::string library_of(const std::string& header)
         {std::regex("hwy/.*"), "Highway"},
         {std::regex("bt[A-Z].*|Bullet.*|LinearMath/.*"), "Bullet"},
         {std::regex("nlohmann/.*"), "nlohmann-json"},
+        {std::regex("pugixml\\.hpp"), "pugixml"},
         {std::regex("embree[34]/.*"), "Embree"},
         {std::regex("png\\.h"), "PNG"},
         {std::regex("CLI/.*"), "CLI11"},

@@ -26,4 +26,7 @@ class MeshFileFault : public std::runtime_error {
 /// The statements v, f, o, g and usemtl, without texture coordinates and normals.
 [[nodiscard]] std::string plain_obj(std::string_view file);
 
+/// The libraries of geometries, nodes, scenes and controllers, with their numbers counted.
+[[nodiscard]] std::string plain_dae(std::string_view file);
+
 } // namespace flotsam

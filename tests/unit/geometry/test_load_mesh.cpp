@@ -413,6 +413,53 @@ TEST_CASE("OBJ is read as its format says", "[geometry][load_mesh]")
                EndsWith("its face on line 11 has the corner \"x\", which is not made of whole numbers"));
 }
 
+TEST_CASE("COLLADA whose numbers are not counted right, or no numbers, is refused", "[geometry][load_mesh]")
+{
+    const Folder folder;
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = dae("");
+        text.replace(text.find(from), from.size(), to);
+        return refusal(folder.write("tet.dae", text));
+    };
+    CHECK_THAT(with(R"(id="a" count="12")", R"(id="a")"), EndsWith("its element <float_array> on line 3 has no count"));
+    CHECK_THAT(with(R"(id="a" count="12")", R"(id="a" count="11")"),
+               EndsWith("its element <float_array> on line 3 has 12 values, but its count is 11"));
+    CHECK_THAT(with("0 2 1 0", "0 2,1 0"),
+               EndsWith("its element <p> on line 6 has \"2,1\", allowed are whole numbers >= 0"));
+    CHECK_THAT(with("0 2 1 0", "0 2 1.0 0"), EndsWith("has \"1.0\", allowed are whole numbers >= 0"));
+    CHECK_THAT(with("0 2 1 0", "0 2 -1 0"), EndsWith("has \"-1\", allowed are whole numbers >= 0"));
+    CHECK_THAT(with("0 2 1 0", "0 2 1 4"),
+               EndsWith("its element <p> on line 6 names vertex 4 as its number 3, there are 4"));
+    CHECK_THAT(with("0 2 1 0", "0 2 1"), EndsWith("its element <p> on line 6 has 11 indices, needed are 12"));
+    CHECK_THAT(with("1.000000 0", "1.000000x 0"),
+               EndsWith("its element <float_array> on line 3 has \"1.000000x\", allowed are numbers"));
+    CHECK_THAT(with("stride=\"3\"", "stride=\"4\""),
+               EndsWith("its element <accessor> on line 3 takes 16 values of an array of 12"));
+    CHECK_THAT(with("name=\"Z\"", "name=\"S\""), Contains("allowed is one before it with numbers X, Y and Z"));
+    CHECK_THAT(with("semantic=\"VERTEX\"", "semantic=\"NORMAL\""), EndsWith("needs one input VERTEX, but has 0"));
+    CHECK_THAT(with("</translate>", " 40</translate>"), EndsWith("has 4 values, needed are 3"));
+    CHECK_THAT(with("<instance_geometry", "<instance_node url=\"#n\"/><instance_geometry"),
+               EndsWith("its element <node> on line 8 is placed within itself"));
+    CHECK_THAT(with("</COLLADA>", ""), Contains("it is no valid XML: Start-end tags mismatch on line "));
+}
+
+TEST_CASE("COLLADA is read with polygons, and with normals among its indices", "[geometry][load_mesh]")
+{
+    const Folder folder;
+    std::string text = dae("");
+    const std::size_t begin = text.find("<triangles");
+    const std::size_t end = text.find("</mesh>");
+    const std::string inputs = R"(<input semantic="NORMAL" source="#p" offset="0"/>)"
+                               R"(<input semantic="VERTEX" source="#v" offset="1"/>)";
+    const std::string polygons = GENERATE(
+        R"(<polylist count="4">INPUTS<vcount>3 3 3 3</vcount><p>3 0 3 2 3 1 3 0 3 1 3 3 3 0 3 3 3 2 3 1 3 2 3 3</p></polylist>)",
+        R"(<polygons count="4">INPUTS<p>3 0 3 2 3 1</p><p>3 0 3 1 3 3</p><p>3 0 3 3 3 2</p><p>3 1 3 2 3 3</p></polygons>)",
+        R"(<tristrips count="1">INPUTS<p>3 0 3 2 3 1 3 3 3 0 3 2</p></tristrips>)");
+    text.replace(begin, end - begin, polygons);
+    text.replace(text.find("INPUTS"), 6, inputs);
+    check_is_tetrahedron(load_mesh(folder.write("tet.dae", text)), {10, 20, 30});
+}
+
 TEST_CASE("glTF with its buffer missing or too short is refused", "[geometry][load_mesh]")
 {
     const Folder folder;
