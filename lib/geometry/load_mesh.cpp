@@ -54,7 +54,7 @@ void check_file(const path& file)
     if (!is_mesh_file_name(file)) refuse(file, "its name must end in .obj, .stl, .ply, .dae, .gltf or .glb");
 }
 
-/// What assimp is to read instead of the file, empty if that can stay.
+/// What assimp is to read instead of the file.
 std::string plain_content(const path& file)
 {
     const std::string content = content_of(file);
@@ -64,7 +64,7 @@ std::string plain_content(const path& file)
     if (extension == ".stl") return plain_stl(content);
     if (extension == ".obj") return plain_obj(content);
     if (extension == ".dae") return plain_dae(content);
-    return {};
+    return plain_gltf(content, file);
 }
 
 /// Appends the triangles of the scene's nodes, each placed by the nodes above it.

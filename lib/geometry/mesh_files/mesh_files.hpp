@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -28,5 +29,8 @@ class MeshFileFault : public std::runtime_error {
 
 /// The libraries of geometries, nodes, scenes and controllers, with their numbers counted.
 [[nodiscard]] std::string plain_dae(std::string_view file);
+
+/// glTF or GLB, version 2: meshes with their positions and indices, and nodes. `path`: where buffers are looked for.
+[[nodiscard]] std::string plain_gltf(std::string_view file, const std::filesystem::path& path);
 
 } // namespace flotsam

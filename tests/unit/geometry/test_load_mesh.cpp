@@ -460,6 +460,37 @@ TEST_CASE("COLLADA is read with polygons, and with normals among its indices", "
     check_is_tetrahedron(load_mesh(folder.write("tet.dae", text)), {10, 20, 30});
 }
 
+TEST_CASE("glTF with indices and places that are not there is refused", "[geometry][load_mesh]")
+{
+    const Folder folder;
+    std::string buffer = gltf_buffer();
+    buffer[48 + 2 * 5] = 9;
+    (void)folder.write("tet.bin", buffer);
+    CHECK_THAT(refusal(folder.write("tet.gltf", gltf("tet.bin"))),
+               EndsWith("index 5 in its accessor 1 names vertex 9, there are 4"));
+    std::string binary = glb();
+    binary[binary.size() - 24 + 2 * 5] = 9;
+    CHECK_THAT(refusal(folder.write("tet.glb", binary)),
+               EndsWith("index 5 in its accessor 1 names vertex 9, there are 4"));
+    (void)folder.write("tet.bin", gltf_buffer());
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = gltf("tet.bin");
+        text.replace(text.find(from), from.size(), to);
+        return refusal(folder.write("tet.gltf", text));
+    };
+    CHECK_THAT(with(R"("count":12)", R"("count":11)"),
+               EndsWith("its primitive 0 of mesh 0 has 11 corners, needed are three for each triangle"));
+    CHECK_THAT(with(R"("count":12)", R"("count":15)"),
+               EndsWith("its accessor 1 needs 30 bytes of its bufferView 1, which has 24"));
+    CHECK_THAT(with(R"("componentType":5126)", R"("componentType":5122)"),
+               EndsWith("its primitive 0 of mesh 0 has positions that are not VEC3 of float"));
+    CHECK_THAT(with(R"("byteOffset":48)", R"("byteOffset":49)"),
+               EndsWith("its bufferView 1 ends at byte 73 of its buffer 0, which has 72"));
+    CHECK_THAT(with(R"("indices":1)", R"("indices":2)"),
+               EndsWith("its primitive 0 of mesh 0 names number 2 of its accessors, there are 2, counted from 0"));
+    CHECK_THAT(with(R"("children":[1])", R"("children":[0])"), EndsWith("its node 0 is placed within itself"));
+}
+
 TEST_CASE("glTF with its buffer missing or too short is refused", "[geometry][load_mesh]")
 {
     const Folder folder;
