@@ -13,6 +13,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 namespace flotsam {
 
@@ -81,6 +82,7 @@ class SceneReader {
     }
 
     TriangleMesh mesh;
+    double farthest = 0.0; ///< largest coordinate in any part's own frame, as large as the part is placed
 
   private:
     void add_part(const aiNode& node, const aiMesh& part, const aiMatrix4x4& placement)
@@ -89,6 +91,7 @@ class SceneReader {
         const std::string name = part.mName.length > 0 ? part.mName.C_Str() : node.mName.C_Str();
         const auto first = static_cast<int>(mesh.vertices.size());
         for (unsigned v = 0; v < part.mNumVertices; ++v) mesh.vertices.push_back(placed(part.mVertices[v], placement));
+        note_farthest(part, placement);
         for (unsigned f = 0; f < part.mNumFaces; ++f) add_triangle(name, part, f, first);
         mesh.part_of_triangle.resize(mesh.triangles.size(), static_cast<int>(mesh.part_names.size()));
         mesh.part_names.push_back(name);
@@ -110,6 +113,17 @@ class SceneReader {
         mesh.triangles.push_back(triangle);
     }
 
+    void note_farthest(const aiMesh& part, const aiMatrix4x4& m)
+    {
+        const double scale =
+            std::sqrt(std::max({m.a1 * m.a1 + m.b1 * m.b1 + m.c1 * m.c1, m.a2 * m.a2 + m.b2 * m.b2 + m.c2 * m.c2,
+                                m.a3 * m.a3 + m.b3 * m.b3 + m.c3 * m.c3}));
+        for (unsigned v = 0; v < part.mNumVertices; ++v) {
+            const aiVector3D& p = part.mVertices[v];
+            farthest = std::max(farthest, scale * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}));
+        }
+    }
+
     /// In double: assimp's own product would round to float once more.
     static Vec3d placed(const aiVector3D& point, const aiMatrix4x4& m)
     {
@@ -122,6 +136,22 @@ class SceneReader {
     const path& file_;
     const aiScene& scene_;
 };
+
+/// The coordinates in the file became floats; far from their origin those are too coarse for what they describe.
+void check_precision(const path& file, const TriangleMesh& mesh, double farthest)
+{
+    constexpr double kRounding = 6e-8; // half a unit in the last place, relative
+    constexpr double kAllowed = 1e-4;  // of the diagonal
+    const Aabb box = bounds(mesh);
+    const double size = (box.max - box.min).norm();
+    const double rounding = kRounding * farthest;
+    if (!(rounding > kAllowed * size) || !std::isfinite(farthest)) return; // check_mesh names what is not finite
+    std::ostringstream reason;
+    reason << "it is " << size << " across but has coordinates up to " << farthest << ", which are rounded by "
+           << rounding << "; allowed is " << kAllowed
+           << " of its size: move it to the origin and place it by its position";
+    refuse(file, reason.str());
+}
 
 TriangleMesh read_with_assimp(const path& file)
 {
@@ -142,6 +172,7 @@ TriangleMesh read_with_assimp(const path& file)
         reader.read_with(*scene->mRootNode, aiMatrix4x4());
     else
         reader.read(*scene->mRootNode, aiMatrix4x4());
+    check_precision(file, reader.mesh, reader.farthest);
     return reader.mesh;
 }
 

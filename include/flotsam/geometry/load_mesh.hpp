@@ -20,7 +20,7 @@ struct MeshFileOptions {
 /// parts stay several parts. Vertices are not welded and nothing is checked beyond what reading needs: see check_mesh.
 /// Coordinates have float's digits, as assimp keeps them.
 /// Throws InputError naming the file: missing, not readable, of an unknown format, truncated, with numbers or indices
-/// that are not what the format says, or without triangles.
+/// that are not what the format says, without triangles, or so far from its origin that float's digits are too few.
 [[nodiscard]] TriangleMesh load_mesh(const std::filesystem::path& file, const MeshFileOptions& options = {});
 
 } // namespace flotsam

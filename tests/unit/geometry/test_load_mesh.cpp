@@ -491,6 +491,26 @@ TEST_CASE("glTF with indices and places that are not there is refused", "[geomet
     CHECK_THAT(with(R"("children":[1])", R"("children":[0])"), EndsWith("its node 0 is placed within itself"));
 }
 
+TEST_CASE("a mesh so far from its origin that float is too coarse is refused", "[geometry][load_mesh]")
+{
+    const Folder folder;
+    const auto at = [](int x) {
+        std::string text = obj();
+        for (std::size_t p = 0; (p = text.find("v ", p)) != std::string::npos; p += 2)
+            text.insert(p + 2, std::to_string(x)); // before 0.0 or 1.0
+        return text;
+    };
+    CHECK_THAT(refusal(folder.write("far.obj", at(10000))),
+               Contains("it is 3.74166 across but has coordinates up to 100001, which are rounded by 0.00600006; "
+                        "allowed is 0.0001 of its size: move it to the origin"));
+    // 6e-7 of 3.7 m is far less than anything that is simulated.
+    CHECK(bounds(load_mesh(folder.write("near.obj", at(1)))).max.x() == Approx(11.0));
+    (void)folder.write("tet.bin", gltf_buffer()); // a node's place is added in double, and costs nothing
+    std::string placed = gltf("tet.bin");
+    placed.replace(placed.find("[10,20,30]"), 10, "[100000,20,30]");
+    check_is_tetrahedron(load_mesh(folder.write("tet.gltf", placed)), {100000, 20, 30}, 2.0);
+}
+
 TEST_CASE("glTF with its buffer missing or too short is refused", "[geometry][load_mesh]")
 {
     const Folder folder;
