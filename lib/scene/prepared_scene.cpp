@@ -134,6 +134,9 @@ void check_reach(const SceneFile& scene, const PreparedScene& prepared)
     for (const PreparedWall& wall : prepared.walls) refuse_far(scene, wall.name, bounds(wall.mesh));
     for (const PreparedBody& body : prepared.bodies)
         refuse_far(scene, body.name, bounds(transformed(body.mesh, body.start)));
+    for (std::size_t k = 0; k < scene.joints.size(); ++k)
+        refuse_far(scene, "joints[" + std::to_string(k) + "] (\"" + scene.joints[k].name + "\")",
+                   {scene.joints[k].point, scene.joints[k].point});
 }
 
 PreparedScene prepare_and_check(const SceneFile& scene)

@@ -42,8 +42,9 @@ PressureSettings read_pressure(const JsonNode& node)
     if (const auto coupling = object.find("coupling"))
         settings.coupling =
             std::array{Settings::Coupling::strong, Settings::Coupling::weak}[coupling->one_of({"strong", "weak"})];
-    object.read("tolerance", settings.tolerance, kPositive);
-    object.read("velocity_tolerance", settings.velocity_tolerance, kPositive);
+    constexpr Allowed kTolerance{Allowed::Range::positive, "", 1e-12, 0.5}; // more is no equation any more
+    object.read("tolerance", settings.tolerance, kTolerance);
+    object.read("velocity_tolerance", settings.velocity_tolerance, kTolerance);
     if (const auto iterations = object.find("max_iterations"))
         settings.max_iterations = iterations->integer(1, 1000000);
     return settings;
@@ -131,11 +132,8 @@ void read_time(const JsonObject& root, SceneFile& scene)
     std::optional<JsonNode> max;
     if (const auto node = root.find("time_step")) {
         const JsonObject time_step(*node, {"max", "cfl"});
-        time_step.read("max", scene.max_time_step, {Allowed::Range::positive, "s"});
-        time_step.read("cfl", scene.cfl);
-        constexpr double kLeastCfl = 1e-3; // a run of a second would take months
-        if (!(scene.cfl >= kLeastCfl && scene.cfl <= 1.0))
-            time_step.required("cfl").refuse_value("must be a number from 0.001 to 1");
+        time_step.read("max", scene.max_time_step, {.range = Allowed::Range::positive, .unit = "s", .most = 1000.0});
+        time_step.read("cfl", scene.cfl, {Allowed::Range::positive, "", 1e-3, 1.0}); // less would take months a second
         max = time_step.find("max");
     }
     if (scene.max_time_step * kMostSteps >= scene.duration) return;

@@ -30,7 +30,6 @@ struct Allowed {
     double least = 0.0; ///< where it is > 0
     double most = 1e9;  ///< in magnitude
 };
-inline constexpr Allowed kPositive{Allowed::Range::positive, ""};
 
 /// One value of a document and the way to it; reads it strictly, or throws an InputError that names the way.
 class JsonNode {

@@ -130,16 +130,19 @@ std::optional<double> FluidWorld::level_at(double x, double y) const
     if (near.empty()) return std::nullopt;
     std::sort(near.begin(), near.end(), std::greater<>());
     const double volume = fluid.particle_mass / impl_->settings.rest_density;
-    const auto left_by_solids = [&](double z) {
-        constexpr double kLeast = 0.2; // in the corner of two walls a quarter is left
-        if (!impl_->has_pairs()) return 1.0;
+    const auto solids_at = [&](double z) {
         const Vec3d point(x, impl_->settings.dimensions == 3 ? y : 0.0, z);
         double solids = 0.0;
         visit_around(impl_->grid, impl_->boundary_cells, point, 1, [&](std::uint32_t b) {
             const double r = (impl_->boundary.position[b].head<3>().cast<double>() - point).norm();
             solids += static_cast<double>(impl_->boundary.volume[b] * impl_->kernel.value(static_cast<Scalar>(r)));
         });
-        return std::max(kLeast, 1.0 - solids);
+        return solids;
+    };
+    // Of walls beside the line alone: they are there further down, too, where there is no ceiling, and no floor here.
+    const auto left_by_solids = [&](double z) {
+        constexpr double kLeast = 0.2; // in the corner of two walls a quarter is left
+        return impl_->has_pairs() ? std::max(kLeast, 1.0 - std::min(solids_at(z), solids_at(z - h))) : 1.0;
     };
     const auto fraction = [&](double z) {
         double sum = 0.0;

@@ -192,8 +192,10 @@ std::vector<std::optional<double>> FluidWorld::waterlines(std::span<const BodySt
             found[k] = median(std::move(levels));
         }
     }
-    // In no water, or in none with a surface of its own: as for all of it.
-    const auto is_nowhere = [&](std::size_t k) { return impl_->bodies[k].query && !found[k]; };
+    // In none with a surface of its own, or not known in which: as for all of it.
+    const auto is_nowhere = [&](std::size_t k) {
+        return impl_->bodies[k].query && !found[k] && (!impl_->has_pairs() || !touching[k].empty());
+    };
     std::optional<double> of_all;
     for (std::size_t k = 0; k < states.size(); ++k) {
         if (!is_nowhere(k)) continue;

@@ -153,8 +153,8 @@ class FluidWorld {
     /// The same of the water that each body is in, where several basins stand at different levels. Waters are one that
     /// hang together through particles a spacing or more below the lower level, so that an overflow joins none; what
     /// lies under a ceiling is no surface. A body without water at it is in that straight under its middle; one that
-    /// stands in two waters has the median of both, if both are deep enough. What is in no water, or in one without
-    /// a surface, has waterline(states).
+    /// stands in two waters has the median of both, if both are deep enough. In one without a surface it has
+    /// waterline(states), as all bodies have before the first step; what is in no water and over none has nothing.
     [[nodiscard]] std::vector<std::optional<double>> waterlines(std::span<const BodyState> states) const;
     /// What prepare noticed, a sentence each: fluid cut by bodies, thin solids sampled in one layer, ...
     [[nodiscard]] const std::vector<std::string>& notes() const;
