@@ -71,7 +71,11 @@ void require_replaceable(const fs::path& target, OutputKind kind)
 {
     std::error_code error;
     const fs::file_status status = fs::status(target, error);
-    if (status.type() == fs::file_type::not_found) return;
+    if (status.type() == fs::file_type::not_found) {
+        if (fs::is_symlink(fs::symlink_status(target, error)))
+            throw InputError("the output directory " + target.string() + " is a link to nothing; remove it");
+        return;
+    }
     if (status.type() == fs::file_type::none) // a name that is too long, or behind a closed door
         throw InputError("cannot look at the output directory " + target.string() + ": " + error.message());
     if (!fs::is_directory(status)) {

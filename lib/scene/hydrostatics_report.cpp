@@ -40,19 +40,26 @@ std::vector<double> radians(const HeelRange& range)
     return angles;
 }
 
+/// As it is turned in the file.
+bool has_hollow(const FloatingBody& body)
+{
+    return WettedSurface(body.mesh, Pose{}).level_of_basins(lowest_point(body.mesh, Pose{})).has_value();
+}
+
 /// As she is turned in the file, her hollow dry; nothing for what has none, sinks or founders.
 std::optional<Flotation> as_vessel(const FloatingBody& body)
 {
-    if (!WettedSurface(body.mesh, Pose{}).level_of_basins(lowest_point(body.mesh, Pose{}))) return std::nullopt;
+    if (!has_hollow(body)) return std::nullopt;
     return vessel_flotation(body, Quatd::Identity());
 }
 
 [[noreturn]] void refuse_as_sinking(const HydrostaticsRequest& request, const FloatingBody& body, double volume)
 {
     std::ostringstream sentence;
-    sentence << request.mesh.string() << ": it sinks: its " << body.mass << " kg in " << volume << " m^3 are "
-             << body.mass / volume << " kg/m^3, and the water has " << body.water_density
-             << " kg/m^3; what floats must be lighter";
+    sentence << request.mesh.string() << ": it sinks: ";
+    if (has_hollow(body)) sentence << "water comes over the rim of its hollow, and then ";
+    sentence << "its " << body.mass << " kg in " << volume << " m^3 are " << body.mass / volume
+             << " kg/m^3, and the water has " << body.water_density << " kg/m^3; what floats must be lighter";
     throw InputError(sentence.str());
 }
 

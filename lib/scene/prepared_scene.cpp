@@ -88,10 +88,13 @@ void add_blocks(const SceneFile& scene, PreparedScene& prepared)
 
 void add_fluid_meshes(const SceneFile& scene, PreparedScene& prepared)
 {
+    const std::vector<std::vector<std::size_t>> tanks = tanks_of_boxes(scene);
     for (std::size_t k = 0; k < scene.fluid.meshes.size(); ++k) {
         const SceneFluidMesh& fluid = scene.fluid.meshes[k];
         const std::string place = "fluids[0].meshes[" + std::to_string(k) + "]";
         prepared.fluid_meshes.push_back(transformed(MeshLoader(scene, prepared).solid(fluid.mesh, place), fluid.pose));
+        if (within_tanks(bounds(prepared.fluid_meshes.back()), scene, tanks).empty())
+            prepared.notes.push_back(place + " lies outside the walls, which cut away all of it");
     }
 }
 

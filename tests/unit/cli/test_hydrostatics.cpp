@@ -176,7 +176,7 @@ TEST_CASE("hydrostatics of an open boat are with her hollow dry", "[cli][hydrost
     CHECK(contains(light.out, "Stable poses with its hollow open to the water"));
     const Outcome founders = run_program(directory, punt + "--mass 30");
     CHECK(founders.code == 2);
-    CHECK(contains(founders.err, "it sinks"));
+    CHECK(contains(founders.err, "it sinks: water comes over the rim of its hollow"));
 }
 
 TEST_CASE("no water comes into a cavity", "[cli][hydrostatics]")

@@ -155,6 +155,8 @@ TEST_CASE("a target that cannot be made is refused in a sentence", "[io][output]
     CHECK_THROWS_AS(OutputDirectory("/proc/out"), InputError);                     // nobody may write there
     CHECK_THROWS_AS(OutputDirectory(scratch / std::string(300, 'x')), InputError); // longer than names can be
     CHECK(scratch.entries() == 1);
+    fs::create_symlink("nowhere", scratch / "link");
+    CHECK_THROWS_WITH(OutputDirectory(scratch / "link"), Catch::Contains("is a link to nothing"));
 }
 
 TEST_CASE("a run that fails half-way can keep its frames", "[io][output]")

@@ -181,6 +181,8 @@ TEST_CASE("mesh files are checked where a scene names them", "[scene]")
     check_refused(kCrate, {"walls=[{\"mesh\":{\"file\":\"nan.obj\"}}]"}, {"scene.json: walls[0].mesh: "}, scene);
     check_refused(kCrate, {"walls=[{\"mesh\":{\"file\":\"good.obj\",\"scale\":0.001}}]"},
                   {"walls[0].mesh: ", "0.001 x 0.001 x 0.001 m", "scale"}, scene);
+    const std::string away = "fluids.0.meshes=[{\"file\":\"good.obj\",\"position\":[5,0,0]}]";
+    CHECK(has_note(checked(kCrate, {away}, scene), "fluids[0].meshes[0] lies outside the walls"));
     const std::string parts = "bodies.0.shape={\"compound\":[{\"sphere\":0.1},{\"mesh\":{\"file\":\"open.obj\"}}]}";
     check_refused(kCrate, {parts}, {"bodies[0].shape.compound[1].mesh: "}, scene);
 }
