@@ -40,7 +40,6 @@ struct Cargo {
     std::vector<SceneBlock*> blocks;
     double mass = 0.0; ///< [kg]; in 2-D per metre
 
-    [[nodiscard]] bool empty() const { return meshes.empty() && blocks.empty(); }
     void move(double up)
     {
         for (SceneBlock* block : blocks)
