@@ -18,19 +18,6 @@ std::size_t index(int triangle)
     return static_cast<std::size_t>(triangle);
 }
 
-/// Some triangles of a mesh, as one part.
-TriangleMesh with_triangles(const TriangleMesh& mesh, const std::vector<int>& triangles)
-{
-    TriangleMesh result;
-    result.vertices.reserve(3 * triangles.size());
-    for (const int t : triangles) {
-        const int first = static_cast<int>(result.vertices.size());
-        for (int k = 0; k < 3; ++k) result.vertices.push_back(mesh.corner(index(t), k));
-        result.triangles.push_back({first, first + 1, first + 2});
-    }
-    return result;
-}
-
 } // namespace
 
 Submerged submerged_part(const TriangleMesh& closed, const Pose& pose, double water_level)

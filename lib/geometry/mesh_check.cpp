@@ -134,18 +134,6 @@ class MeshChecker {
         refuse_edges(topology.open_edges, " with a triangle on one side only", "the surface of a solid must be closed");
     }
 
-    /// One part by itself, its corners unshared: enough for bounds and volume, and cheap for a thousand parts.
-    [[nodiscard]] TriangleMesh part_mesh(std::size_t part) const
-    {
-        TriangleMesh mesh;
-        for (const int t : parts_.triangles[part]) {
-            const auto first = static_cast<int>(mesh.vertices.size());
-            for (int k = 0; k < 3; ++k) mesh.vertices.push_back(mesh_.corner(static_cast<std::size_t>(t), k));
-            mesh.triangles.push_back({first, first + 1, first + 2});
-        }
-        return mesh;
-    }
-
     void flip(std::size_t triangle)
     {
         std::swap(mesh_.triangles[triangle][1], mesh_.triangles[triangle][2]);
@@ -163,7 +151,7 @@ class MeshChecker {
         for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
             if (parts_.is_flipped[t] != 0) std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]);
         for (std::size_t part = 0; part < parts_.triangles.size(); ++part) {
-            const TriangleMesh alone = part_mesh(part);
+            const TriangleMesh alone = with_triangles(mesh_, parts_.triangles[part]);
             boxes.push_back(bounds(alone));
             if (parts_.is_closed[part] != 0)
                 orient_closed(part, alone);

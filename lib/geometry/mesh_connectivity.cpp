@@ -123,4 +123,16 @@ ConnectedParts connected_parts(const TriangleMesh& mesh, const TriangleAdjacency
     return parts;
 }
 
+TriangleMesh with_triangles(const TriangleMesh& mesh, const std::vector<int>& triangles)
+{
+    TriangleMesh result;
+    result.vertices.reserve(3 * triangles.size());
+    for (const int t : triangles) {
+        const auto first = static_cast<int>(result.vertices.size());
+        for (int k = 0; k < 3; ++k) result.vertices.push_back(mesh.corner(static_cast<std::size_t>(t), k));
+        result.triangles.push_back({first, first + 1, first + 2});
+    }
+    return result;
+}
+
 } // namespace flotsam

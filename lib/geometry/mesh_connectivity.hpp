@@ -34,4 +34,7 @@ struct ConnectedParts {
 
 [[nodiscard]] ConnectedParts connected_parts(const TriangleMesh& mesh, const TriangleAdjacency& topology);
 
+/// Some triangles of a mesh, their corners unshared: enough for bounds and volume, and cheap for a thousand parts.
+[[nodiscard]] TriangleMesh with_triangles(const TriangleMesh& mesh, const std::vector<int>& triangles);
+
 } // namespace flotsam

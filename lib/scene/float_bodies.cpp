@@ -23,9 +23,9 @@ Aabb reach_of(const PreparedBody& body)
 }
 
 /// As the search for a stable pose sees it, dry inside. In 2-D a log that is so long that it turns in the plane only.
-FloatingBody floating(const PreparedBody& body, const SceneFile& scene)
+FloatingBody floating(const PreparedBody& body, TriangleMesh outer, const SceneFile& scene)
 {
-    FloatingBody result{outer_surface(body.mesh), body.mass, Vec3d::Zero(), scene.fluid.density, -scene.gravity.z()};
+    FloatingBody result{std::move(outer), body.mass, Vec3d::Zero(), scene.fluid.density, -scene.gravity.z()};
     if (scene.dimensions == 3) return result;
     const Vec3d size = bounds(body.mesh).size();
     const double stretch = 10.0 * std::max(size.x(), size.z()) / size.y();
@@ -86,9 +86,10 @@ Cargo cargo_of(const PreparedBody& body, const SceneFile& scene, PreparedScene& 
 
 /// As it is turned, at the draft of a vessel with nothing but `cargo` [kg] in her basins; nothing for what is none,
 /// sinks or founders.
-std::optional<Pose> pose_as_vessel(const PreparedBody& body, const SceneFile& scene, double level, double cargo)
+std::optional<Pose> pose_as_vessel(const PreparedBody& body, const TriangleMesh& outer, const SceneFile& scene,
+                                   double level, double cargo)
 {
-    const TriangleMesh hull = hull_of(outer_surface(body.mesh), scene.dimensions);
+    const TriangleMesh hull = hull_of(outer, scene.dimensions);
     Pose pose = body.start;
     pose.position.z() += level - lowest_point(body.mesh, body.start);
     if (!WettedSurface(hull, pose).level_of_basins(level)) return std::nullopt;
@@ -104,12 +105,13 @@ std::optional<Pose> pose_as_vessel(const PreparedBody& body, const SceneFile& sc
 std::vector<Pose> poses_afloat(const PreparedBody& body, const std::array<bool, 6>& lock, const SceneFile& scene,
                                double level, double cargo)
 {
-    const FloatingBody afloat = floating(body, scene);
+    TriangleMesh outer = outer_surface(body.mesh);
+    if (const auto vessel = pose_as_vessel(body, outer, scene, level, cargo)) return {*vessel};
+    if (cargo > 0.0) return {};
+    const FloatingBody afloat = floating(body, std::move(outer), scene);
     const Quatd& given = body.start.orientation;
     const bool turns = scene.dimensions == 2 ? !lock[4] : !lock[3] && !lock[4];
     std::vector<Pose> poses;
-    if (const auto vessel = pose_as_vessel(body, scene, level, cargo)) return {*vessel};
-    if (cargo > 0.0) return {};
     if (!(afloat.mass < afloat.water_density * mass_properties(afloat.mesh).volume)) return {};
     try {
         // What lies as well in any direction (a disc, a ball) is left as it is turned.

@@ -1,12 +1,13 @@
 #include "world/body_basins.hpp"
 
+#include "world/next_to.hpp"
+
 #include <algorithm>
 #include <numeric>
 
 namespace flotsam {
 namespace {
 
-constexpr double kNextTo = 1.5;       ///< spacings: particles of resting water have neighbours at 0.9 to 1.2
 constexpr double kBelowSurface = 1.0; ///< spacings: what is higher may be a film that runs somewhere else
 
 } // namespace
@@ -27,16 +28,13 @@ BodyBasins::BodyBasins(std::span<const Vec4> position, const SelfPairs& pairs, d
 /// Joins the particles below a height with their neighbours there.
 void BodyBasins::fill_up_to(double height)
 {
-    const Scalar reach_sq = static_cast<Scalar>(kNextTo * kNextTo * spacing_ * spacing_);
     for (; filled_ < upwards_.size(); ++filled_) {
         const std::uint32_t i = upwards_[filled_];
         if (!(static_cast<double>(position_[i].z()) < height)) return;
         is_filled_[i] = 1;
-        for (std::uint32_t k = pairs_.start[i]; k < pairs_.start[i + 1]; ++k) {
-            const std::uint32_t j = pairs_.neighbour(i, k);
-            if (is_filled_[j] == 0 || pairs_.parts[k] == 0) continue;
-            if ((position_[i] - position_[j]).head<3>().squaredNorm() < reach_sq) waters_.join(i, j);
-        }
+        visit_next_to(position_, pairs_, spacing_, i, [&](std::uint32_t j) {
+            if (is_filled_[j] != 0) waters_.join(i, j);
+        });
     }
 }
 

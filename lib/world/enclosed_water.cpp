@@ -1,12 +1,13 @@
 #include "world/enclosed_water.hpp"
 
+#include "world/next_to.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace flotsam {
 namespace {
 
-constexpr double kNextTo = 1.5;    ///< spacings: particles of resting water have neighbours at 0.9 to 1.2
 constexpr double kSteep = 0.4;     ///< rest densities a spacing; a flat surface has 0.45 to 0.6, a wall 0 to 0.35
 constexpr double kSurfaces = 0.15; ///< of the particles on a face of a cube of the water: less is roughness of solids
 
@@ -15,16 +16,10 @@ constexpr double kSurfaces = 0.15; ///< of the particles on a face of a cube of 
 double EnclosedWater::mean_shift(const Water& water, std::span<const Vec4> shift)
 {
     const std::size_t n = water.position.size();
-    const double reach = kNextTo * water.particle_spacing;
     sets_.reset(n);
-    for (std::uint32_t i = 0; i < n; ++i) {
-        for (std::uint32_t k = water.pairs.start[i]; k < water.pairs.start[i + 1]; ++k) {
-            const std::uint32_t j = water.pairs.neighbour(i, k);
-            if (water.pairs.parts[k] == 0) continue; // hidden from each other
-            const Scalar apart = (water.position[i] - water.position[j]).head<3>().norm();
-            if (static_cast<double>(apart) < reach) sets_.join(i, j);
-        }
-    }
+    for (std::uint32_t i = 0; i < n; ++i)
+        visit_next_to(water.position, water.pairs, water.particle_spacing, i,
+                      [&](std::uint32_t j) { sets_.join(i, j); });
     const double steep = kSteep * water.rest_density / water.particle_spacing;
     bodies_.assign(n, Body{});
     for (std::size_t i = 0; i < n; ++i) {

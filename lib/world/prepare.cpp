@@ -214,19 +214,21 @@ void FluidWorld::Impl::bail_out(const FluidSeed& seed, const std::vector<Vessel>
 /// or mesh of water, unless that is bailed out there.
 void FluidWorld::Impl::leave_out_doubles(std::size_t seed, const std::vector<Vessel>& vessels, std::vector<char>& keep)
 {
-    const auto is_dry = [&](const FluidSeed& water, const Aabb& extent, const Vec3d& point) {
-        return water.cut && std::any_of(vessels.begin(), vessels.end(), [&](const Vessel& vessel) {
-                   return surrounds(extent, vessel.bounds, settings.dimensions) &&
-                          vessel.basins.holds(point, 0.01 * spacing());
-               });
+    std::vector<const Vessel*> bailed; // out of the earlier water
+    const auto is_dry = [&](const Vec3d& point) {
+        return std::any_of(bailed.begin(), bailed.end(),
+                           [&](const Vessel* vessel) { return vessel->basins.holds(point, 0.01 * spacing()); });
     };
     std::size_t doubles = 0;
     for (std::size_t k = 0; k < seed; ++k) {
         if (!seeds[k].covers) continue;
-        const Aabb extent = extent_of(seeds[k].positions);
+        bailed.clear();
+        for (const Vessel& vessel : vessels)
+            if (seeds[k].cut && surrounds(extent_of(seeds[k].positions), vessel.bounds, settings.dimensions))
+                bailed.push_back(&vessel);
         const std::vector<Vec3d>& points = seeds[seed].positions;
         for (std::size_t i = 0; i < keep.size(); ++i) {
-            if (keep[i] == 0 || !seeds[k].covers(points[i]) || is_dry(seeds[k], extent, points[i])) continue;
+            if (keep[i] == 0 || !seeds[k].covers(points[i]) || is_dry(points[i])) continue;
             keep[i] = 0;
             ++doubles;
         }
